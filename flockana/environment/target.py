@@ -7,6 +7,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from flockana.base.override_checks import overrides_consistently
 from flockana.base.short_repr import ShortRepr
 from flockana.base.value_checks import FloatArray
 
@@ -74,6 +75,12 @@ class Target(ShortRepr, ABC):
     def harmonic(self) -> Harmonic | None:
         """Return the path in closed form for compiled integrators, or None."""
         return None
+
+    @property
+    def closed_path(self) -> Harmonic | None:
+        """`harmonic` of this motion; None where a subclass moves otherwise than the class that gives it."""
+        is_own = overrides_consistently(type(self), "harmonic", ("position", "rate", "state"))
+        return self.harmonic if is_own else None
 
     @property
     def consistent(self) -> bool | None:

@@ -260,7 +260,7 @@ class RescaledVelocity(Target):
 
     @cached_property
     def harmonic(self) -> Harmonic | None:  # noqa: D102
-        path = self.target.harmonic
+        path = self.target.closed_path
         if path is None:
             return None
         terms = np.zeros_like(path.terms)  # p_r is a multiple of the true rate, whatever the target's own p_r

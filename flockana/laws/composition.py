@@ -104,7 +104,7 @@ class Composition(GainedLaw):
         elif self.obstacles:
             ensure_one_dimension(self.obstacles, self.obstacles[0].dimension, "obstacles[0] has")
         normalise(self, value_checks.ensure_flag, "feedforward")
-        if self.feedforward and (self.target is None or self.target.harmonic is None):
+        if self.feedforward and (self.target is None or self.target.closed_path is None):
             raise ArgumentError(
                 f"feedforward = True, target = {self.target!r}: expected a γ-agent of known acceleration, such as "
                 "SineTarget(...) or CircleTarget(...)"

@@ -36,7 +36,7 @@ class Motion:
 
 def motion(target: Target) -> Motion:
     """Return a γ-agent's motion as a line plus a harmonic."""
-    path = target.harmonic if isinstance(target, Target) else None
+    path = target.closed_path if isinstance(target, Target) else None
     if path is None:
         raise ArgumentError(f"target = {target!r}: expected a static, linear, sine or circle target")
     start, velocity, cosine, sine, constant = path.terms

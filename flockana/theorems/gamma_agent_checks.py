@@ -22,15 +22,15 @@ _PER_FEATURE = 4.0  # times in the shortest time in which a function changes, by
 _MOST_TIMES = 100_000
 
 
-def _is_closed(target: Target) -> bool:
-    """Return whether the path is a known sum of a line and an oscillation."""
-    return target.consistent is not None and target.harmonic is not None
+def has_closed_path(target: Target) -> bool:
+    """Return whether a γ-agent's path is known to be the sum of a line and an oscillation."""
+    return target.consistent is not None and target.closed_path is not None
 
 
 def _sample_times(run: Trajectory) -> FloatArray:
     """Return the times at which the γ-agent is sampled."""
     target = run.law.target
-    if _is_closed(target) or len(run.t) < 2:
+    if has_closed_path(target) or len(run.t) < 2:
         return run.t
     steps = run.path.t
     times = np.unique(np.concatenate([steps, 0.5 * (steps[:-1] + steps[1:])]))  # a jump is two samples at one time
@@ -42,7 +42,9 @@ def _seen_everywhere(run: Trajectory, times: FloatArray) -> bool:
     """Return whether nothing can hide between sample times, by closed form or by the declared time scale."""
     target = run.law.target
     has_feature = target.feature is not None and len(times) > 1
-    return _is_closed(target) or bool(has_feature and np.diff(times).max() <= 1.001 * target.feature / _PER_FEATURE)
+    return has_closed_path(target) or bool(
+        has_feature and np.diff(times).max() <= 1.001 * target.feature / _PER_FEATURE
+    )
 
 
 def _between(t: FloatArray) -> FloatArray:
@@ -61,7 +63,7 @@ def target_rests(run: Trajectory, *, any_p_r: bool) -> Hypothesis:
     speed = run.scales.speed
     way, change = float(np.abs(q_r - q_r[0]).max()), float(np.abs(p_r - (p_r[0] if any_p_r else 0.0)).max())
     moves = (
-        (_is_closed(target) and not target.constant_velocity)
+        (has_closed_path(target) and not target.constant_velocity)
         or way > 4.0 * EPS * float(np.abs(q_r).max())
         or change > 4.0 * EPS * max(float(np.abs(p_r).max()), speed)
     )
@@ -71,7 +73,7 @@ def target_rests(run: Trajectory, *, any_p_r: bool) -> Hypothesis:
         status,
         -max(way / run.scales.length, change / speed),
         _describe_rest(moves, any_p_r, p_r[0]) + ("" if status != "assumed" else f", as seen at {times.size} times"),
-        decided="exact" if moves or _is_closed(target) else "assumed",
+        decided="exact" if moves or has_closed_path(target) else "assumed",
     )
 
 

@@ -34,7 +34,7 @@ class TargetFeedforward(Term):
     @property
     def path(self) -> Harmonic:
         """The γ-agent's path in closed form."""
-        path = self.target.harmonic
+        path = self.target.closed_path
         assert path is not None  # as every law that has this term makes sure
         return path
 

@@ -111,7 +111,7 @@ class Leaders(Term):
 
 def known_path(leader: Any) -> Harmonic:
     """Return the harmonic path of a leader; raise unless it reports its true velocity."""
-    path = leader.harmonic if isinstance(leader, Target) else None
+    path = leader.closed_path if isinstance(leader, Target) else None
     if path is None or path.factor != 1.0 or path.terms[4].any():
         raise ArgumentError(
             f"leader {leader!r}: expected a StaticTarget, LinearTarget, SineTarget or CircleTarget with its true "

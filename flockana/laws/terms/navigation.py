@@ -6,7 +6,6 @@ from functools import cached_property
 import numpy as np
 
 from flockana.base.errors import ArgumentError
-from flockana.base.override_checks import overrides_consistently
 from flockana.base.value_checks import FloatArray
 from flockana.environment.target import Harmonic, Target
 from flockana.interactions.gains import Gains, weighted
@@ -83,7 +82,7 @@ class Navigation(Term):
         return np.sqrt(1.0 + np.einsum("ij,ij->i", x, x) / self.unit**2)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
-        form, path = self._form, self.target.harmonic
+        form, path = self._form, self.target.closed_path
         if form is None or path is None or path.omega:  # only at rest or on a line it is exact to the last bit
             (q_r, p_r), rate = self.target.state(t), self.target.rate(t)
             zeros = np.zeros_like(rate)
@@ -100,9 +99,8 @@ class Navigation(Term):
     @cached_property
     def _form(self) -> TermKernel | None:
         """Compiled form for a target with a harmonic path; else None."""
-        path = self.target.harmonic
-        is_own = overrides_consistently(type(self.target), "harmonic", ("position", "rate", "state"))
-        return None if path is None or not is_own else self._along(path)
+        path = self.target.closed_path
+        return None if path is None else self._along(path)
 
     def compiled(self, m: int) -> TermKernel | None:  # noqa: D102
         return self._form

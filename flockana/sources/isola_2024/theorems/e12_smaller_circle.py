@@ -11,6 +11,7 @@ from flockana.laws.olfati_saber import Algorithm2
 from flockana.stability.centre_path import motion, path_and_factor
 from flockana.stability.centre_transfer import predicted_gain
 from flockana.stability.tracking import response_ratio, whole_period
+from flockana.theorems.gamma_agent_checks import has_closed_path
 from flockana.theorems.second_runs import DOUBT
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, unmet
 from flockana.theorems.theorem_toolkit import (
@@ -37,7 +38,7 @@ def _hypotheses(run: Trajectory) -> list[Hypothesis]:
     is_applicable = type(run.law) is Algorithm2 and not run.law.gains.per_agent
     kind = f"{run.law.title}{', gains per agent' if not is_applicable and type(run.law) is Algorithm2 else ''}"
     path, factor = path_and_factor(run.law.target) if is_applicable else (None, 1.0)
-    swings = isinstance(path, SineTarget | CircleTarget) and whole_period(run, path)
+    swings = isinstance(path, SineTarget | CircleTarget) and has_closed_path(path) and whole_period(run, path)
     detail = f"p_r = {factor:.6g} dq_r/dt" if swings else "no circle or sine, or less than a period"
     drag = float(run.law.gains.c2_gamma) if is_applicable else 0.0
     return [

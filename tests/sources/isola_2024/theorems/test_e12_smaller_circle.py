@@ -6,11 +6,12 @@ from math import pi
 import numpy as np
 import pytest
 
-from flockana import Algorithm2, Gains, Tolerances, scenario, simulate, theorem, verify
+from flockana import Algorithm2, Gains, Tolerances, compose, scenario, simulate, theorem, verify
 from flockana.base.errors import ArgumentError
 from flockana.environment.targets import CircleTarget, RescaledVelocity, SineTarget, StaticTarget
 from flockana.sources.isola_2024.laws import MSNDiscretisation
 from flockana.sources.isola_2024.theorems.e12_smaller_circle import measured_ratio
+from flockana.stability.centre_path import motion
 from flockana.stability.centre_transfer import predicted_gain
 from flockana.stability.tracking import response_ratio
 from flockana.symbolic.parameter_symbols import GainSymbols
@@ -42,6 +43,28 @@ def test_e12_on_one_agent(path):
     assert response_ratio(run)[0] == pytest.approx(predicted_gain(law.gains, pi, factor=0.25), abs=1e-6)
     verdict = verify("E12", run)
     assert statuses(verdict) == {"predicted": "verified", "consistent": "verified", "printed": "refuted"}
+
+
+class Ellipse(CircleTarget):
+    """Half as high as wide: a circle by its class alone."""
+
+    def position(self, t):
+        return super().position(t) * [1.0, 0.5]
+
+    def rate(self, t):
+        return super().rate(t) * [1.0, 0.5]
+
+
+def test_a_subclass_that_moves_otherwise_is_no_circle():
+    path = Ellipse((0.0, 0.0), 2.0, 0.5)
+    law = Algorithm2(gains=Gains(c1_gamma=20.0, c2_gamma=9.0), target=RescaledVelocity(path, 0.25))
+    verdict = verify("E12", simulate(law, [[1.0, 1.0]], [[0.0, 0.0]], (0.0, 4.0)))
+    assert set(statuses(verdict).values()) == {"vacuous"}
+    assert law.target.harmonic is None  # what compiled code would have followed
+    with pytest.raises(ArgumentError, match="expected a static, linear, sine or circle target"):
+        motion(path)
+    with pytest.raises(ArgumentError, match="expected a γ-agent of known acceleration"):
+        compose(navigation=path, feedforward=True)
 
 
 @pytest.mark.parametrize(("frequency", "proof"), [(0.95, "tracking-gain"), (1.05, None)])
