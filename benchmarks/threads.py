@@ -1,4 +1,4 @@
-"""One core against two: evaluations and whole runs of large flocks by the clock, and what more cores would give."""
+"""Many cores against one: evaluations and whole runs of large flocks by the clock, with 2, 4, 8 and 16 threads."""
 
 from __future__ import annotations
 
@@ -10,43 +10,64 @@ import time
 from statistics import median
 
 from benchmarks.flocks import FLOCKS
-from benchmarks.machine import all_cores
+from benchmarks.machine import all_cores, cores
 from benchmarks.rows import Asked, Found, Row
 
-STUDY = "Two cores against one"
+STUDY = "Many cores against one"
+COUNTS = (2, 4, 8, 16)
 _SERIAL = "sorting into cells, the copying of vectors and the calls from Python run on one core"
 _MEMORY = "sorting into cells on one core, and new memory that both ask for: rounds differ by half"
 
 
 def study(*, quick: bool) -> Found:
-    """Clock times with two threads over those with one, in turns in a process of its own that may use all cores."""
+    """Clock times with more threads over those with one, in turns in a process of its own that may use all cores."""
     rows = []
     for kind in ("lattice", "gas"):
         for n in (100_000,) if quick else (100_000, 1_000_000):
             with all_cores():
+                counts = [count for count in COUNTS if count <= cores()]
                 command = [sys.executable, "-m", "benchmarks.threads", kind, str(n), "2" if quick else "15"]
                 done = subprocess.run(
-                    command, capture_output=True, check=True, env=os.environ | {"NUMBA_NUM_THREADS": "2"}
+                    [*command, *map(str, counts)],
+                    capture_output=True,
+                    check=True,
+                    env=os.environ | {"NUMBA_NUM_THREADS": str(counts[-1])},
                 )
             evaluation, run = json.loads(done.stdout)
-            rows.append(_row(f"{kind}: one evaluation", n, evaluation, Asked("<=", 0.6, why=_MEMORY)))
+            rows += _rows(f"{kind}: one evaluation", n, counts, evaluation, Asked("<=", 0.6, why=_MEMORY))
             if n == 100_000:
-                rows.append(_row(f"{kind}: ten steps of RK4", n, run, Asked("<=", 0.65, why=_SERIAL)))
+                rows += _rows(f"{kind}: ten steps of RK4", n, counts, run, Asked("<=", 0.65, why=_SERIAL))
     return Found(rows)
 
 
-def _row(name: str, n: int, times: list[list[float]], asked: Asked) -> Row:
-    share = median(two / one for one, two in times)
-    serial = min(1.0, max(0.0, 2.0 * share - 1.0))
-    eight, sixteen = (serial + (1.0 - serial) / cores for cores in (8, 16))
-    note = (
-        f"serial share {serial:.2f}: 8 cores would take {eight:.2f}, 16 {sixteen:.2f}, if nothing else were in the way"
-    )
-    return Row(STUDY, name, n, 1e3 * median(two for _, two in times), "ms", "one core", share, asked, note)
+def _rows(name: str, n: int, counts: list[int], rounds: list[list[float]], asked: Asked) -> list[Row]:
+    """Return a row for each number of threads; two are asked for something, and say what more of them would give."""
+    rows = []
+    for k, count in enumerate(counts, 1):
+        share, value = median(times[k] / times[0] for times in rounds), 1e3 * median(times[k] for times in rounds)
+        serial = min(1.0, max(0.0, (count * share - 1.0) / (count - 1.0)))
+        eight, sixteen = (serial + (1.0 - serial) / many for many in (8, 16))
+        note = f"serial share {serial:.2f}"
+        if count == counts[-1] < 16:
+            note += f": 8 cores would take {eight:.2f}, 16 {sixteen:.2f}, if nothing else were in the way"
+        rows.append(
+            Row(
+                STUDY,
+                f"{name}, {count} threads",
+                n,
+                value,
+                "ms",
+                "one core",
+                share,
+                asked if count == 2 else None,
+                note,
+            )
+        )
+    return rows
 
 
-def _measure(kind: str, n: int, rounds: int) -> list[list[list[float]]]:
-    """Return (seconds with one thread, with two) of evaluations and of runs, round by round."""
+def _measure(kind: str, n: int, rounds: int, counts: list[int]) -> list[list[list[float]]]:
+    """Return the seconds of evaluations and of runs with one thread and with each count, round by round."""
     from flockana.dynamics.simulate import simulate
     from flockana.kernels.thread_counts import limited_threads
     from flockana.laws.olfati_saber import Algorithm1
@@ -62,9 +83,9 @@ def _measure(kind: str, n: int, rounds: int) -> list[list[list[float]]]:
 
     found = []
     for call in (evaluate, run) if n == 100_000 else (evaluate,):
-        for threads in (1, 2):
+        for threads in (1, *counts):
             call(threads)
-        found.append([[_seconds(call, threads) for threads in (1, 2)] for _ in range(rounds)])
+        found.append([[_seconds(call, threads) for threads in (1, *counts)] for _ in range(rounds)])
     return [*found, []][:2]
 
 
@@ -75,4 +96,6 @@ def _seconds(call: object, threads: int) -> float:
 
 
 if __name__ == "__main__":
-    sys.stdout.write(json.dumps(_measure(sys.argv[1], int(sys.argv[2]), int(sys.argv[3]))))
+    sys.stdout.write(
+        json.dumps(_measure(sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), [int(x) for x in sys.argv[4:]]))
+    )

@@ -2,14 +2,17 @@
 
     python -m tools.fit_coverage 200 outcomes.jsonl        # seeds of each kind; kinds may follow
 
-Outcomes are kept in the file, so that a run that was interrupted goes on.
+Cases run on all cores that the process may use. Outcomes are kept in the file, so that a run that was interrupted goes
+on.
 
 Widths are compared with those of an oracle that knows the noise: the deviations of least squares at the truth.
 """
 
 import json
+import os
 import sys
 from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -186,11 +189,12 @@ def main() -> None:
     seeds, store = int(sys.argv[1]), Path(sys.argv[2])
     found = [json.loads(line) for line in store.read_text().splitlines()] if store.exists() else []
     have = {(one["kind"], one["seed"]) for one in found}
-    for seed, name in ((seed, name) for seed in range(seeds) for name in sys.argv[3:] or KINDS):
-        if (name, seed) not in have:
-            found.append(outcome(name, seed))
-            with store.open("a") as file:
-                file.write(json.dumps(found[-1]) + "\n")
+    cases = [(name, seed) for seed in range(seeds) for name in sys.argv[3:] or KINDS]
+    with ProcessPoolExecutor(len(os.sched_getaffinity(0))) as pool, store.open("a") as file:
+        for done in as_completed([pool.submit(outcome, *case) for case in cases if case not in have]):
+            found.append(done.result())
+            file.write(json.dumps(found[-1]) + "\n")
+            file.flush()
     sys.stdout.write(
         "| kind | intervals that hold the truth, of the worst parameter | of all | width over the oracle's | "
         "called unidentifiable | of these told by the oracle |\n|---|---|---|---|---|---|\n"

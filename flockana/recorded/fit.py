@@ -17,7 +17,7 @@ from flockana.recorded.law_parameters import FreeParameters
 from flockana.recorded.likelihood_profiles import LowerMinimumError, profile_interval
 from flockana.recorded.matching_windows import Window, deviations, rescaled, usual_window, windows
 from flockana.recorded.recording import Recording, ensure_recording
-from flockana.recorded.shooting import MatchResult, Problem, matched
+from flockana.recorded.shooting import MatchResult, Problem, matched, reference_sizes
 
 _LEVEL = 0.95
 _OPEN = 10.0  # times a parameter's value, from which width of its interval on it is not identifiable
@@ -312,8 +312,10 @@ def _result(search: _Search, problem: Problem, best: MatchResult) -> Fit:
     scale = np.where(np.isfinite(errors) & (errors > 0.0), errors, 1.0)
     open_remarks = [
         f"the data do not tell {name}: {value:.4g}, {interval_text(*end)}"
-        for name, value, end in zip(names, values, parameter_bounds, strict=True)
-        if not isfinite(end[1] - end[0]) or end[1] - end[0] > _OPEN * abs(value)
+        for name, value, size, end in zip(
+            names, values, reference_sizes(values, problem.first), parameter_bounds, strict=True
+        )
+        if not isfinite(end[1] - end[0]) or end[1] - end[0] > _OPEN * size
     ]
     return Fit(
         search.parameters.with_values(values),

@@ -15,6 +15,7 @@ from flockana.recorded.recording import Recording
 from flockana.recorded.velocities import motions
 
 _TIMES = 8.0  # of the law, which a window of samples is as long as
+_PLACES = 8  # of a window, at which the law is linearised at least: with little gain its time is longer than contacts
 _FEWEST = 40  # samples in a window
 _NUDGE = 1e-5  # relative change of a parameter for slopes
 _STEP = 0.4  # of the law's time, which a step of the integration is at most
@@ -71,7 +72,7 @@ class Window:
         now = np.concatenate([np.eye(2 * dimension), np.zeros((2 * dimension, len(nearby)))], axis=1)
         all_slopes = np.empty((len(times), width, now.shape[1]))
         all_slopes[0] = now[:width]
-        step = _within(times, longest)
+        step = min(_within(times, longest), max(1, len(times) // _PLACES))
         for a in range(0, len(times) - 1, step):
             b = min(a + step, len(times) - 1)
             t, middle = 0.5 * float(times[a] + times[b]), (a + b) // 2

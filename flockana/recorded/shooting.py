@@ -29,6 +29,7 @@ _FELT = 1e-6  # least change of the squared residuals by doubling a parameter th
 _DAMPED = 1e8  # damping beyond which nothing is left to try
 _SLOW = 4  # rounds one after another that gain nothing to speak of, whatever slopes promise
 _TRUSTED = 0.5  # by which a gain may differ from the one that slopes promise; else they are computed anew
+_STEEPEST = 1e100  # slope of a residual, whose squares would soon overflow
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +79,12 @@ class Problem:
         """Return the slopes of each window by its start, the parameters and the constant errors."""
         theta, _ = self.split(z)
         law, nearby = self.with_values(theta), neighbouring_laws(self.with_values, theta)
-        rows = [part.slopes(law, nearby, start, finer, block) for part, start in zip(self.parts, starts, strict=False)]
+        with np.errstate(over="ignore", invalid="ignore"):
+            rows = [
+                part.slopes(law, nearby, start, finer, block) for part, start in zip(self.parts, starts, strict=False)
+            ]
+        if not all(np.abs(row).max(initial=0.0) < _STEEPEST for row in rows):
+            raise ArgumentError("the slopes of the law's solution overflow: expected other first parameters")
         if self.spread is None:
             return rows
         active, wide = np.flatnonzero(self.spread > 0.0), []
@@ -166,7 +172,7 @@ def inverse(matrix: FloatArray) -> FloatArray:
     """Return the pseudoinverse of a symmetric matrix scaled to a unit diagonal."""
     if not len(matrix):
         return matrix
-    scales = np.sqrt(np.diag(matrix))
+    scales = np.sqrt(np.maximum(np.diag(matrix), 0.0))  # rounding leaves less than 0
     unit = np.divide(1.0, scales, out=np.zeros_like(scales), where=scales > 0.0)
     return unit[:, None] * np.linalg.pinv(unit[:, None] * matrix * unit, 1e-14, hermitian=True) * unit
 
@@ -229,7 +235,7 @@ def matched(
         message = message or f"no end after {rounds} rounds"
         normal = _normal(problem, theta, starts, finer, _FINE)
     degrees_of_freedom = max(size - sum(x.size for x in starts) - len(problem.first), 1)
-    identifiable = np.diag(normal.reduced) * theta**2 > _FELT
+    identifiable = np.diag(normal.reduced) * reference_sizes(theta, problem.first) ** 2 > _FELT
     return MatchResult(theta, normal.covariance, identifiable, starts, now, degrees_of_freedom, message, normal, finer)
 
 
@@ -262,6 +268,14 @@ def _normal(
     problem: Problem, theta: FloatArray, starts: Sequence[FloatArray], *by: Any, damping: float = 0.0
 ) -> NormalEquations:
     return NormalEquations.of(problem.slopes(theta, starts, *by), len(theta), damping)
+
+
+def reference_sizes(theta: FloatArray, first: FloatArray) -> FloatArray:
+    """Return what parameters are compared with: their size, or their first size where they are pressed to 0."""
+    sizes = np.abs(theta)
+    is_pressed = (first > 0.0) & (theta[: len(first)] <= 2.0 * _LEAST * first)
+    sizes[: len(first)][is_pressed] = first[is_pressed]
+    return sizes
 
 
 def _squares(found: list[FloatArray]) -> float:
