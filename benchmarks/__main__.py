@@ -23,6 +23,7 @@ STUDIES = (
     "laws",
     "engines",
     "runs",
+    "whole_steps",
     "precision",
     "before",
     "costs",

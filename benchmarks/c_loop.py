@@ -40,6 +40,8 @@ def compiled() -> ctypes.CDLL | None:
     loaded.flock_flow.argtypes, loaded.flock_flow.restype = [ctypes.c_void_p, *[_DOUBLES] * 6], ctypes.c_double
     loaded.flock_repeat.argtypes = [ctypes.c_void_p, *[_DOUBLES] * 6, ctypes.c_long, ctypes.c_double]
     loaded.flock_repeat.restype = ctypes.c_double
+    loaded.flock_rk4.argtypes = [ctypes.c_void_p, *[_DOUBLES] * 5, ctypes.c_double, ctypes.c_double, ctypes.c_long]
+    loaded.flock_rk4.restype = ctypes.c_long
     return loaded
 
 
@@ -82,6 +84,14 @@ class Loop:
         """(u, dH/dt), computed so many times in one call, over the list that is kept or one of its own each time."""
         given = q, p, self._law, self._gains, self._target, self._u
         return self._u, self._c.flock_repeat(self._flock, *given, times, self._range if rebuild else 0.0)
+
+    def stepped(
+        self, q: FloatArray, p: FloatArray, dt: float, steps: int, skin: float
+    ) -> tuple[FloatArray, FloatArray, int]:
+        """(q, p) after so many steps of RK4, and how often the list was made."""
+        q, p = q.copy(), p.copy()
+        given = q, p, self._law, self._gains, self._target
+        return q, p, int(self._c.flock_rk4(self._flock, *given, self._range + skin, dt, steps))
 
     def close(self) -> None:
         """Give the memory back."""

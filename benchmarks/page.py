@@ -37,7 +37,7 @@ HEADLINES = {
         "150 agents and every verdict", _TIMES, "Python's start with scipy"),
 }  # fmt: skip
 _HEAD = "# Performance\n\nMeasured by `{command}`; what stands behind each number is folded below.\n"
-_HOW = """Times are CPU times on one core (waits and two cores: clock times), medians over interleaved
+_HOW = """Times are CPU times on one core (many cores: clock times), medians over interleaved
 rounds; a ratio is the median of the ratios of the rounds. Unless a row says "faster", a ratio is our time
 over that of what stands beside it. Flocks live in the plane, d = 7 and r = 8.4: a triangular lattice disturbed by 3 %
 of d (6 neighbours), the same with its agents in no order, and a uniform gas (12 neighbours on average). Times per pair

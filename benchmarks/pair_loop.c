@@ -164,3 +164,50 @@ double flock_repeat(flock *f, const double *q, const double *p, const pair_law *
     }
     return rate;
 }
+
+/* A run of the classical Runge-Kutta method, with neither checks nor energies: the list is made anew where an agent has
+ * moved by half the skin beside the mean. Agents are put in the order of their cells first and stay in it; q and p are
+ * overwritten in the caller's. Returns how often the list was made. */
+long flock_rk4(flock *f, double *q, double *p, const pair_law *law, const gains *g, const double *target, double reach,
+               double dt, long steps) {
+    long n = f->n, m = 2 * n, builds = 1;
+    unsigned *caller = malloc(sizeof(unsigned) * n);
+    double *work = malloc(8 * sizeof(double) * m), *x = work, *v = x + m, *u = v + m, *listed = u + m;
+    double *y = listed + m, *yv = y + m, *sum = yv + m, *sv = sum + m;
+    flock_build(f, q, p, reach);
+    memcpy(caller, f->order, sizeof(unsigned) * n);
+    for (long k = 0; k < n; k++)
+        for (long c = 0; c < 2; c++) x[2 * k + c] = q[2 * caller[k] + c], v[2 * k + c] = p[2 * caller[k] + c];
+    flock_build(f, x, v, reach);
+    memcpy(listed, x, sizeof(double) * m);
+    for (long step = 0; step < steps; step++) {
+        memcpy(y, x, sizeof(double) * m), memcpy(yv, v, sizeof(double) * m);
+        for (int stage = 0; stage < 4; stage++) {
+            double mean_x = 0.0, mean_y = 0.0, farthest = 0.0, half = 0.5 * (reach - law->r);
+            for (long k = 0; k < n; k++) mean_x += x[2 * k] - listed[2 * k], mean_y += x[2 * k + 1] - listed[2 * k + 1];
+            mean_x /= n, mean_y /= n;
+            for (long k = 0; k < n; k++) {
+                double a = x[2 * k] - listed[2 * k] - mean_x, b = x[2 * k + 1] - listed[2 * k + 1] - mean_y;
+                farthest = a * a + b * b > farthest ? a * a + b * b : farthest;
+            }
+            if (farthest > half * half) {
+                flock_build(f, x, v, reach), builds++;
+                memcpy(listed, x, sizeof(double) * m);
+            }
+            flock_flow(f, x, v, law, g, target, u);
+            double weight = stage == 0 || stage == 3 ? 1.0 / 6.0 : 1.0 / 3.0, h = stage == 2 ? dt : 0.5 * dt;
+            if (stage == 0)
+                for (long k = 0; k < m; k++) sum[k] = weight * v[k], sv[k] = weight * u[k];
+            else
+                for (long k = 0; k < m; k++) sum[k] += weight * v[k], sv[k] += weight * u[k];
+            if (stage < 3)
+                for (long k = 0; k < m; k++) x[k] = y[k] + h * v[k], v[k] = yv[k] + h * u[k];
+            else
+                for (long k = 0; k < m; k++) x[k] = y[k] + dt * sum[k], v[k] = yv[k] + dt * sv[k];
+        }
+    }
+    for (long k = 0; k < n; k++)
+        for (long c = 0; c < 2; c++) q[2 * caller[k] + c] = x[2 * k + c], p[2 * caller[k] + c] = v[2 * k + c];
+    free(caller), free(work);
+    return builds;
+}

@@ -72,5 +72,6 @@ def _alone(law: Algorithm2, rounds: int) -> list[Row]:
         rows.append(Row(STUDY, text, 150, value, "µs", asked=Asked("<=", 8.0, "value", why)))
         if against is not None:
             other = f"C, called from C, list {theirs}: {1e6 * np.median(against) / _TIMES:.3g} µs"
-            rows.append(Row(STUDY, text, 150, value, "µs", other, ratio(_TIMES * found[ours], against)))
+            asked = Asked("<=", 1.4, why=why) if why else None
+            rows.append(Row(STUDY, text, 150, value, "µs", other, ratio(_TIMES * found[ours], against), asked))
     return rows

@@ -3,7 +3,7 @@ import pytest
 
 from benchmarks.c_loop import Loop, compiled
 from benchmarks.flocks import FLOCKS, R
-from flockana import Algorithm2, AlphaInteraction, StaticTarget
+from flockana import Algorithm2, AlphaInteraction, StaticTarget, simulate
 from flockana.kernels.neighbours import pair_blocks
 
 
@@ -39,3 +39,15 @@ def test_a_list_with_a_skin_serves_flocks_that_moved_within_it(library):
     u = law.flow(0.0, moved, p)[0]
     np.testing.assert_allclose(loop.flow(moved, p)[0], u, rtol=0.0, atol=1e-12 * np.abs(u).max())
     loop.close()
+
+
+def test_a_run_in_c_ends_where_ours_does(library):
+    """Forty steps of a gas whose list, with half the skin, is made anew on the way."""
+    law, (q, p) = Algorithm2(target=StaticTarget((0.0, 0.0))), FLOCKS["gas"](500)
+    loop = Loop(library, law, len(q))
+    run = simulate(law, q, p, (0.0, 0.2), method="RK4", dt=0.005, t_eval=[0.2])
+    end, speed, lists = loop.stepped(q, p, 0.005, 40, 0.5)
+    loop.close()
+    np.testing.assert_allclose(end, run.q[-1], rtol=0.0, atol=1e-11 * np.abs(q).max())
+    np.testing.assert_allclose(speed, run.p[-1], rtol=0.0, atol=1e-11 * np.abs(run.p).max())
+    assert lists > 1
