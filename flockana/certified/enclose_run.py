@@ -144,7 +144,7 @@ def _collected(
 
 @dataclass(frozen=True)
 class _March:
-    """Steps of `enclose`: lengths, options, and the law's length scale."""
+    """How `enclose` goes through time: the flow, its length scale, and bounds of its steps."""
 
     flow: Flow
     length: float

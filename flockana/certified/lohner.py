@@ -89,7 +89,7 @@ def taylor_step(flow: Flow, t: arb, h: arb, before: StateSet, order: int) -> Ste
 
 
 def crossing_step(flow: Flow, t: arb, h: arb, before: StateSet) -> Step | None:
-    """Return a step of second order, for a right-hand side that is C¹ only; None if it is too long."""
+    """Enclose a step by Taylor's formula of second order, for C¹ right-hand sides; None if the step is too long."""
     # x(t + h) = x + h x' + ½ h² x'' at some time between, each coordinate at its own, with x'' continuous.
     span, box = hull(arb(0), h), before.hull
     during = _picard(flow, t, span, box)

@@ -40,7 +40,7 @@ class Descent(NamedTuple):
 
 
 def descend(potential: Potential, q: FloatArray, max_iter: int) -> Descent:
-    """Return a minimum reached downhill from q; anneal if pairs collapsed on the way."""
+    """Return a minimum reached downhill from q; anneal if pairs of agents fell onto each other on the way."""
     steps, message = 100 * max_iter, "Converged"
     best_state = relax(potential, q, steps, tol=_ROUGH)
     for heat in _HEATS if pairs_collapsed(potential, q, best_state) else ():

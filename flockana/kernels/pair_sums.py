@@ -143,7 +143,7 @@ parallel_act, parallel_energy = parallel(act), parallel(energy)
 
 @register_jitable
 def _linked(x, ends, begin, end, near, s2):
-    """Write some of the links, stored as alternating agent numbers, as pairs with squared distances."""
+    """Write pairs i, j and squared distances of links `begin` to `end`, given as agent numbers in one row."""
     for k in range(begin, end):
         i, j, squared_value = np.uint64(ends[2 * k]), np.uint64(ends[2 * k + 1]), 0.0
         for c in range(M):

@@ -259,7 +259,7 @@ def touching_pairs(points, reach, first, second, tol, out):
 
 @subroutine
 def _largest_distance(stack, spans, enough, tol):
-    """Return (upper bound, parameter) of the curve stack[0]'s largest distance from 0, within tol or up to `enough`."""
+    """Return a bound of a curve's largest distance from 0, to `tol` or once below `enough`, and its parameter."""
     proven_bound, best_value, best_time = 0.0, 0.0, -1.0
     spans[0, 0], spans[0, 1] = 0.0, 1.0
     top = np.int64(0)  # typed: of a literal, `_halve` would be compiled once more

@@ -188,7 +188,7 @@ class Disturbed(Wrapper):
         return None if self.stepped else self.compiled_push(m)
 
     def compiled_push(self, m: int) -> Compiled | None:
-        """Return the compiled law with its pushes but without noise, as `compiled` gives it."""
+        """Return the compiled law with the external force, as `compiled` does, but without its noise."""
         inner = self.law.compiled_push(m)
         form = None if callable(self.force) or self.times else inner
         if form is None:

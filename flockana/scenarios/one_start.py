@@ -109,7 +109,7 @@ _OWN = (
 
 @cache
 def entries() -> tuple[LawEntry, ...]:
-    """Return Algorithms 1 and 2 and the laws of the sources' `ONE_START`."""
+    """Return the laws that can be compared from one start: Algorithms 1 and 2, and those that sources list."""
     return _OWN + tuple(entry for module in source_modules("scenarios") for entry in getattr(module, "ONE_START", ()))
 
 

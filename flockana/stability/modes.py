@@ -176,7 +176,7 @@ class SecondOrder:
 
     @cached_property
     def rigid_invariant(self) -> Invariant:
-        """Return the separated modes if the rigid motions are the only zero modes (sparse)."""
+        """Return zero modes and the others apart, of a sparse flock all of whose zero modes are rigid motions."""
         rigid = rigid_motions(self.q)
         if self.split.exact:
             unit = translations(*self.q.shape)
@@ -216,7 +216,7 @@ class SecondOrder:
         return sorted(ranked_modes, key=lambda one: one[:2])
 
     def spread(self, k: int, mode: Mode) -> ComplexArray:
-        """Return the motion of all coordinates in a mode of component k, including hearing components."""
+        """Return a mode of component k in all coordinates: its own, and those of components that hear it."""
         from scipy.sparse import csc_array, eye_array
         from scipy.sparse.linalg import splu
 

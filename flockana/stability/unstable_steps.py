@@ -93,7 +93,7 @@ def _by_pairs(steps: Steps, rate: float) -> Growth:
 
 
 def _resolved(steps: Steps, period: float, width: float) -> bool:
-    """Return whether a map is stable below and grows above a step, by a share `width`, beyond rounding."""
+    """Return whether a map is stable a share `width` below a period and unstable as far above it, beyond rounding."""
     return min(side * steps.growth(period * (1.0 + side * width)) for side in (-1.0, 1.0)) > 10.0 * _ROUNDING
 
 

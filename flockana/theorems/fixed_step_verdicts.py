@@ -59,7 +59,7 @@ def on_steps(item: Theorem, seen: Observed, tolerances: Tolerances) -> Known:
 
 
 def _of_law(seen: Observed, law: FixedSteps) -> Observed:
-    """Return the states of a fixed-step run as samples of its law, unknown in between."""
+    """Return a fixed-step run as samples of its law; nothing is known of the states between them."""
     run = seen.run
     extra_series = {"work": np.zeros(len(run.t))}  # which only the law's own balance asks for: it is not used here
     return Observed.alone(Trajectory(run.t, run.q, run.p, run.u, law.law, extra_series))

@@ -10,7 +10,7 @@ from flockana.theorems.theorem import Hypothesis
 _SHOWN = 4  # agents of a group
 
 
-def unheard_groups(weights: Any) -> list[list[int]]:
+def closed_groups(weights: Any) -> list[list[int]]:
     """Return the groups of agents that hear nobody outside (weights_ij > 0: i hears j); a root is a group of one."""
     # There is a root exactly if there is one group; a net is strongly connected exactly if that is all agents.
     import networkx
@@ -29,7 +29,7 @@ def describe_groups(groups: list[list[int]]) -> str:
 
 def has_root(weights: Any) -> Hypothesis:
     """Return the hypothesis that one agent is heard by all."""
-    groups = unheard_groups(weights)
+    groups = closed_groups(weights)
     name = "one agent is heard by all, directly or through others"
     remedy = "let all but one of these groups hear another"
     return condition(name, len(groups) == 1, detail=describe_groups(groups), remedy=remedy)

@@ -14,7 +14,7 @@ from flockana.laws.terms.term import Derivatives, Term, TermKernel
 
 
 def ensure_apart(q: FloatArray, why: str = "the pair force has no limit there") -> None:
-    """Raise if two agents coincide; the message states the reason."""
+    """Raise if two agents coincide; the error says why they may not."""
     order = np.lexsort(q.T)
     coincident_pairs = np.flatnonzero((q[order][1:] == q[order][:-1]).all(axis=1))
     if coincident_pairs.size:

@@ -159,7 +159,7 @@ def _snapshots(path: Path) -> list[Snapshot]:
 
 
 def _parsed(file: TextIO, path: Path) -> Iterator[Snapshot]:
-    """The snapshots of a dump, each a series of items that ends with its atoms."""
+    """Yield a LAMMPS dump's snapshots, each of which ends with its atoms."""
     step, time, count, box = None, None, None, None
     for line in file:
         if not line.startswith("ITEM:"):

@@ -4,7 +4,7 @@ import numpy as np
 
 from flockana.sources.moreau_2005.laws import NetAveraging
 from flockana.theorems.claims import by_count, judged, run_theorem, vacuous
-from flockana.theorems.net_roots import describe_groups, unheard_groups
+from flockana.theorems.net_roots import closed_groups, describe_groups
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, unmet
 from flockana.theorems.theorem_toolkit import EPS, Enclosure, Observed, condition, law_is, limit_claim
 
@@ -22,14 +22,14 @@ HALVES = (  # agent 1 hears 0, is heard by 0, hears 2, is heard by 2
 def windows_rooted(law: NetAveraging) -> tuple[Hypothesis, Hypothesis]:
     """Return the hypotheses that every window of some length has a root, and that all nets together have none."""
     nets, grows = np.array(law.nets), np.array(law.growth) > 0
-    together = unheard_groups(nets.sum(axis=0))
+    together = closed_groups(nets.sum(axis=0))
     rootless_claim = condition("the nets have no root together", len(together) > 1, detail=describe_groups(together))
     name, remedy = "the nets of every window of T steps have a root together, for some T", ""
     if not grows.any():
         text, holds = f"T = {sum(law.lengths)}: {describe_groups(together)}", len(together) == 1
         remedy = "let all but one of these groups hear another"
     else:  # a net acts for longer and longer, so that long windows show it alone
-        alone = [(k, unheard_groups(nets[k])) for k in np.flatnonzero(grows).tolist()]
+        alone = [(k, closed_groups(nets[k])) for k in np.flatnonzero(grows).tolist()]
         lacking = [(k, groups) for k, groups in alone if len(groups) > 1]
         holds, text = not lacking, f"T = {sum(law.lengths) + 1}: each net that acts ever longer has a root"
         if lacking:

@@ -6,7 +6,7 @@ from flockana.certified.balls import exact
 from flockana.certified.consensus_polynomials import laplacian_of, moving_eigenvalues
 from flockana.sources.olfati_saber_murray_2004.laws import AverageConsensus
 from flockana.theorems.claims import judged, run_theorem, vacuous
-from flockana.theorems.net_roots import has_root, unheard_groups
+from flockana.theorems.net_roots import closed_groups, has_root
 from flockana.theorems.theorem import Checked, Claim, Hypothesis, Needs, Tolerances, unmet
 from flockana.theorems.theorem_toolkit import EPS, Enclosure, FloatArray, Observed, condition, law_is, limit_claim
 
@@ -26,7 +26,7 @@ def is_balanced(weights: Rows) -> Hypothesis:
 
 def is_strong(weights: Rows) -> Hypothesis:
     """Return the hypothesis that every agent is heard by every other, directly or through others."""
-    group, n = unheard_groups(weights)[0], len(weights)
+    group, n = closed_groups(weights)[0], len(weights)
     return condition("the net is strongly connected", len(group) == n, detail=f"{len(group)} of {n}")
 
 
