@@ -43,6 +43,9 @@ class Samples(Protocol):
     def estimated(self) -> bool: ...  # noqa: D102
 
     @property
+    def smoothed(self) -> bool: ...  # noqa: D102
+
+    @property
     def ids(self) -> Any: ...  # noqa: D102
 
     @property
