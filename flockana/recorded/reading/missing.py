@@ -15,6 +15,7 @@ _SMALL = (0.0, -1.0)  # ordinary coordinates, too: agents must leap there and ba
 _PLAIN = (32767.0, -32768.0, *(sign * (10.0**k - 1.0) for k in range(2, 8) for sign in (1.0, -1.0)))
 _HUGE = 1e9
 _FAR = 10.0  # spans of all other numbers, beyond which any number that returns looks so
+_APART = 0.1  # spans of all other numbers, beyond which a small number along one axis alone may be a lost coordinate
 _LEAP, _LEAP_OUT = 5.0, 2.0  # of a fast step: to a number, and to one outside the region of all others
 _FAST, _SHORT, _FEW = 0.98, 0.25, 10  # quantiles: fast steps, short leaps; steps below which two leaps are needed
 
@@ -37,10 +38,11 @@ def without_missing(arrays: Mapping[str, Any], missing: Any, where: str) -> dict
             if _looks_missing(x, gone := _places(x, value, kind), value, kind):
                 k, i = (int(j) for j in np.argwhere(gone)[0])
                 first_text = f"agent {(arrays.get('ids') or range(shape[1]))[i]} at t = {np.ravel(arrays['t'])[k]:g}"
-                low, high, text = np.nanmin(x[~gone]), np.nanmax(x[~gone]), repr(value).removesuffix(".0")
+                others, text = x[~gone & ~np.isnan(x).any(axis=2)], repr(value).removesuffix(".0")
+                range_text = f"from {others.min():.4g} to {others.max():.4g}" if others.size else "nothing"
                 raise ArgumentError(
-                    f"{where}: {kind} is {text} at {gone.sum()} places ({first_text} first), and from {low:.4g} to "
-                    f"{high:.4g} elsewhere: this may stand for agents that were not seen, or be a {MEANINGS[kind]}: "
+                    f"{where}: {kind} is {text} at {gone.sum()} places ({first_text} first), and {range_text} "
+                    f"elsewhere: this may stand for agents that were not seen, or be a {MEANINGS[kind]}: "
                     f"expected missing={text}, or missing=() if nothing is missing, which decides"
                 )
     return {**arrays, **vectors, "read_as": (*arrays.get("read_as", ()), *notes)}
@@ -64,9 +66,12 @@ def _varying(x: FloatArray) -> _Mask:
 
 def _places(x: FloatArray, value: float, kind: str) -> _Mask:
     """Return which vectors are a value: positions along all axes that vary, or any along one where it is far off."""
-    far, is_variable = _beyond(x, value, 1.0) & (value not in _SMALL), _varying(x)
-    in_all_axes = (x == value)[:, :, is_variable].all(axis=2) & (kind == "q" and bool(is_variable.any()))
-    result: _Mask = (x == value)[:, :, far].any(axis=2) | in_all_axes
+    is_value, is_variable, small = x == value, _varying(x), value in _SMALL
+    far: _Mask = is_value & _beyond(x, value, _APART if small else 1.0)
+    if small:  # of positions, of agents that are elsewhere, too
+        far &= (kind == "q") & ~(is_value | np.isnan(x)).all(axis=0)
+    in_all_axes = is_value[:, :, is_variable | ~is_variable.any()].all(axis=2) & (kind == "q")
+    result: _Mask = far.any(axis=2) | in_all_axes
     return result
 
 
@@ -82,7 +87,10 @@ def _looks_missing(x: FloatArray, gone: _Mask, value: float, kind: str) -> bool:
     out = bool(_beyond(x, value, 0.0)[is_variable].all())
     steps = np.sqrt(np.sum(np.diff(x, axis=0) ** 2, axis=2))
     leaps, others = steps[left & ~np.isnan(steps)], steps[~gone[1:] & ~gone[:-1] & (steps > 0.0)]
-    if len(leaps) < 2 and not (len(leaps) and count > 1 and len(others) >= _FEW):
-        return out and value == -1.0 and bool(is_variable.sum() > 1 and count > 1 and gone.all(axis=0).any())
+    stays = ((x == value).all(axis=2) | np.isnan(x[:, :, 0])).all(axis=0).any()  # an agent that is nowhere else
+    if stays and len(x) > 1 and (not is_variable.any() if plain else value == -1.0 and (others.size or gone.all())):
+        return True
+    if len(leaps) < 2 and not (len(leaps) and len(others) >= _FEW):
+        return False
     fast = float(np.quantile(others, _FAST)) if others.size else 0.0
-    return float(np.quantile(leaps, _SHORT)) > (_LEAP_OUT if out else _LEAP) * fast
+    return float(np.quantile(leaps, _SHORT)) > (_LEAP_OUT if out and count > 1 else _LEAP) * fast

@@ -26,6 +26,13 @@ LOST = [
     (0.0, (slice(30, 60), 1), {"low": -1.0, "size": 2.0, "m": 3}),
     (-9999.0, (slice(30, 33), 1, 2), {"m": 3}),  # the depth alone
     (-1.0, (slice(30, 40), 1), {"low": 5.0, "m": 1}),
+    (0.0, (50, 1, 2), {"low": 2.0, "size": 8.0, "m": 3}),  # the depth alone, once
+    (0.0, (0, 1, 2), {"low": 2.0, "size": 8.0, "m": 3}),  # at the first sample
+    (-1.0, (119, 2, 1), {"low": 100.0}),  # at the last
+    (-1.0, (slice(None), 3), {"low": -3.0, "size": 6.0}),  # where others are, too
+    (-1.0, (slice(None), 3), {"low": 5.0, "m": 1}),
+    (-1.0, (slice(None), slice(None)), {}),
+    (-9999.0, (slice(None), slice(None)), {}),
 ]
 
 
@@ -87,6 +94,9 @@ POSITIONS = {
     "released": lambda rng: (1.0 - np.exp(-0.3 * np.arange(90.0)))[:, None, None] * rng.normal(size=(4, 2)),
     "a step": lambda rng: np.where(np.arange(60) < 40, 0.0, 200.0)[:, None, None] + [[0.0], [1.0]],
     "columns of an index": lambda rng: np.stack(np.broadcast_arrays(np.arange(9.0), np.arange(4.0)[:, None]), 2),
+    "ground vehicle": lambda rng: np.where(np.arange(12).reshape(4, 3) == 2, 0.0, walks(low=10.0, m=3)),
+    "take-off": lambda rng: np.maximum(np.arange(90.0) - 20.0, 0.0)[:, None, None] * 0.1 * rng.random((4, 3)),
+    "a lattice at rest": lambda rng: np.tile(np.mgrid[-1:2, -1:2].reshape(2, 9).T, (20, 1, 1)),
     "an instant": lambda rng: np.array([[[0.0, 0.0], [1.0, 0.0], [100.0, 100.0]]]),
 }
 
