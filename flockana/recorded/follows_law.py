@@ -1,6 +1,6 @@
 """Test of whether the samples of a recording follow a law, within their stated accuracy."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -10,13 +10,14 @@ from flockana.base.value_checks import FloatArray
 from flockana.base.vector_norms import lengths
 from flockana.dynamics.error_tolerances import rounding_floors
 from flockana.recorded.accuracy import CONFIDENCE
-from flockana.recorded.matching_windows import usual_window, windows
-from flockana.recorded.one_step_predictions import SHARE, predicted
+from flockana.recorded.matching_windows import Window, usual_window, windows
+from flockana.recorded.one_step_predictions import SHARE, led, predicted
 from flockana.recorded.recording import Recording
 from flockana.recorded.shooting import Problem, matched
 
 _WAYS = 3  # random directions in which samples are moved by their accuracy, to see how far that leads
 _GROWN = 2.0  # times the largest of these: what an error of the accuracy's size may grow to
+_NEAREST = 100  # agents whose errors are added up, each at its worst, before a sample counts as off
 _ROUNDINGS = 1e3  # of the numbers in the law's own arithmetic between two samples
 _AT_MOST = 50_000  # steps of a law that follow a recording: some ten seconds of a small flock
 
@@ -123,7 +124,34 @@ def _differences(
         own_changes[1:] + _GROWN * grown[k] + 2.0 * lengths(fine[k] - ends[k]) + _ROUNDINGS * floor + smallest_float
         for k, (own_changes, floor) in enumerate(((place, floors.place), (speed, floors.speed)))
     )
+    excesses = np.max([deviation / allowance for deviation, allowance in zip(off, allowances, strict=True)], axis=0)
+    for k in np.argsort(-excesses.max(axis=1), kind="stable").tolist() if place.any() or speed.any() else ():
+        if excesses[k].max() <= 1.0:
+            break
+        largest = _largest_changes(law, t[k : k + 2], (q[k], p[k]), (place[k], speed[k]), int(np.argmax(excesses[k])))
+        for allowance, sizes, row in zip(allowances, largest, grown, strict=True):
+            allowance[k] += _GROWN * np.maximum(sizes - row[k], 0.0)
+        if any((deviation[k] > allowance[k]).any() for deviation, allowance in zip(off, allowances, strict=True)):
+            break  # it is off, whatever the others are
     return off, (allowances[0], allowances[1])
+
+
+def _largest_changes(
+    law: Any, t: FloatArray, state: tuple[FloatArray, FloatArray], errors: tuple[FloatArray, FloatArray], agent: int
+) -> FloatArray:
+    """Return how far errors of the agents near one can move a law's prediction together, to first order, (2, n)."""
+    start, h = float(t[0]), float(t[1] - t[0])
+    end, total = led(law, start, h, *state), np.zeros((2, len(state[0])))
+    for j in np.argsort(lengths(state[0] - state[0][agent]))[:_NEAREST].tolist():
+        for kind in (0, 1):
+            squares = np.zeros(total.shape)
+            for axis in range(state[0].shape[1]):
+                nudged = [x.copy() for x in state]
+                nudged[kind][j, axis] += errors[kind][j]
+                nudged_end = led(law, start, h, nudged[0], nudged[1])
+                squares += [lengths(one - other) ** 2 for one, other in zip(nudged_end, end, strict=True)]
+            total += np.sqrt(squares)
+    return total
 
 
 def _over_windows(rec: Recording, law: Any) -> Following:
@@ -139,6 +167,11 @@ def _over_windows(rec: Recording, law: Any) -> Following:
     parts, largest = windows(rec, duration), (0.0, 0.0, 0)
     try:
         match = matched(Problem(parts, lambda _: law, np.empty(0)))
+        is_off = [bool(x @ x > chi2.isf((1.0 - CONFIDENCE) / 2.0 / len(parts), x.size)) for x in match.residuals]
+        if any(is_off):
+            starts = [_extended_start(*x, law) for x in zip(parts, match.starts, is_off, strict=True)]
+            again = matched(Problem(parts, lambda _: law, np.empty(0)), starts=starts)
+            match = min(match, again, key=lambda item: item.squares)
     except FlockanaError as error:
         raise ArgumentError(f"the law cannot be integrated from the recorded starts: {error}") from error
     for segment, residual in zip(parts, match.residuals, strict=True):
@@ -160,3 +193,15 @@ def _over_windows(rec: Recording, law: Any) -> Following:
     elif ratio > 1.0:
         text += f", where {most:.4g} times, and {band:.3g} deviations at one place, are allowed"
     return Following(status, 1.0 - ratio, text, q0, p0, smooth.p, smooth.accuracy.speed)
+
+
+def _extended_start(part: Window, matched_start: FloatArray, is_off: bool, law: Any) -> FloatArray:
+    """Return the start of a window, if it is off anew: one that matches the first two samples, then four, and so on.
+
+    At an end of the samples splines are worst: a start by them may be too far off to find the solution of all samples.
+    """
+    start, count = (part.start, 2) if is_off else (matched_start, len(part.t))
+    while count < len(part.t):
+        first_part = replace(part, t=part.t[:count], y=part.y[:count], root=part.root[:count], start=start)
+        start, count = matched(Problem([first_part], lambda _: law, np.empty(0))).starts[0], 2 * count
+    return start

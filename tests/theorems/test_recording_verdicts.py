@@ -1,11 +1,14 @@
 """Recordings are judged within their stated accuracy: as runs of the same law are, or not at all."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import flockana as fl
 from flockana.base.errors import ArgumentError
 from flockana.recorded.follows_law import following
+from flockana.recorded.matching_windows import windows
 from flockana.theorems.collisions import energy_within_accuracy
 from flockana.theorems.observed_run import Observed
 from flockana.theorems.recording_verdicts import DEFINITIONS, observed_recording
@@ -67,6 +70,37 @@ def test_a_wide_bound_is_met_and_decides_what_has_room(own):
     assert found.hypotheses[0].status == "met"
     assert found.claim("i").status == "verified"
     assert found.claim("ii").status == "inconclusive"
+
+
+def test_errors_of_all_agents_may_add_up():
+    """Each number is off by its bound, in the direction that moves the middle agent most."""
+    law, q, s = fl.Algorithm1(), fl.lattice.hexagonal_patch(1, 7.0), 0.01
+    middle = int(np.argmin(np.linalg.norm(q - q.mean(axis=0), axis=1)))
+    t = np.array([0.0, 0.05])
+    run = fl.simulate(law, q, np.zeros(q.shape), (0.0, 0.05), t_eval=t)
+    a, b = (x.toarray()[2 * middle].reshape(-1, 2) for x in law.derivatives(0.0, q, np.zeros(q.shape)))
+    nudges = [s * x / np.maximum(np.linalg.norm(x, axis=1, keepdims=True), 1e-300) for x in (a, b)]
+    places, speeds = (np.stack([x[0] + nudge, x[1]]) for x, nudge in zip((run.q, run.p), nudges, strict=True))
+    speeds[1, middle, 0] -= s
+    assert following(fl.Recording(t, places, speeds, bound=1.001 * s, p_bound=1.001 * s), law).status == "met"
+    speeds[1, middle, 0] -= 100.0 * s
+    rec = fl.Recording(t, places, speeds, bound=1.001 * s, p_bound=1.001 * s)
+    assert f"p of agent {middle} at t = 0.05 is off" in following(rec, law).detail
+
+
+@pytest.mark.slow
+def test_a_start_that_splines_do_not_tell_is_found_from_the_first_samples(monkeypatch):
+    """A repulsion between the first two samples: the spline's velocity is far off, and all samples at once mislead."""
+    t, law = 0.05 * np.arange(18), fl.Algorithm1()
+    run = fl.simulate(law, [[0.0, 0.0], [7.0, 0.0], [3.0, 6.0]], np.zeros((3, 2)), (0.0, t[-1]), t_eval=t)
+    noise = np.random.default_rng(0).normal(0.0, 1e-4, run.q.shape)
+
+    def far_windows(*args):
+        off = np.repeat([0.0, 60.0], 6) * np.tile([1.0, -1.0, -1.0, 1.0, 1.0, 1.0], 2)
+        return [replace(part, start=part.start + off) for part in windows(*args)]
+
+    monkeypatch.setattr("flockana.recorded.follows_law.windows", far_windows)
+    assert following(fl.Recording(t, run.q + noise, sd=1e-4), law).status == "met"
 
 
 def test_enclosures_hold_every_flock_that_the_accuracy_allows(own):
