@@ -188,17 +188,41 @@ def compare(rec: Recording, law: Any) -> Comparison:
 
 
 def _position_finding(rec: Recording, led: FloatArray, by: str) -> str:
-    """Return a finding on the ratio of recorded to predicted displacements; empty if they agree."""
+    """Return a finding on the ratio of recorded to predicted displacements; empty if they agree.
+
+    One agent, one axis or one stretch of time is named if it is off and all the rest agrees.
+    """
     steps = np.diff(rec.q, axis=0)
     is_known = ~np.isnan(steps + led)
-    steps, led = steps[is_known], led[is_known]
-    if not (steps @ steps > 0.0 and led @ led > 0.0):
-        return ""
-    factor = float(steps @ led / (led @ led))
-    left = float(np.sum((steps - factor * led) ** 2) / (steps @ steps))
-    if abs(factor - 1.0) <= max(_OFF_CLOCK, 3.0 * np.sqrt(left)) * max(1.0, abs(factor)):
-        return ""
-    return (
-        f"positions move by {factor:.4g} times what {by} say: expected 1; mend units, times or speeds first, then "
-        "compare terms"
-    )
+
+    def factor(part: Any) -> float | None:
+        """Return the ratio over a part of the displacements; 1 if they agree, None if they tell none."""
+        x, y = steps[is_known & part], led[is_known & part]
+        if not (x @ x > 0.0 and y @ y > 0.0):
+            return None
+        ratio = float(x @ y / (y @ y))
+        left = float(np.sum((x - ratio * y) ** 2) / (x @ x))
+        is_right = abs(ratio - 1.0) <= max(_OFF_CLOCK, 3.0 * np.sqrt(left)) * max(1.0, abs(ratio))
+        return 1.0 if is_right else ratio
+
+    def agrees(part: Any) -> bool:
+        """Return whether displacements are as predicted, up to a tenth of their squares."""
+        x, y = steps[is_known & part], led[is_known & part]
+        return bool(np.sum((x - y) ** 2) <= 0.1 * (x @ x) > 0.0)
+
+    parts = [(f" of agent {name}", np.arange(rec.n)[:, None] == i) for i, name in enumerate(rec.ids)]
+    parts += [(f" along {axis}", np.arange(rec.m) == i) for i, axis in enumerate("xyz"[: rec.m])]
+    sizes = [np.sum(np.where(is_known, x, 0.0) ** 2, axis=(1, 2)) for x in (steps - led, steps)]
+    off_rows = np.flatnonzero(sizes[0] > 0.25 * sizes[1])
+    if 0 < len(off_rows) == np.ptp(off_rows) + 1:
+        text = f" from t = {rec.t[off_rows[0]]:.4g} to {rec.t[off_rows[-1] + 1]:.4g}"
+        parts.append((text, np.isin(np.arange(len(steps)), off_rows)[:, None, None]))
+    for text, part in (*((text, part) for text, part in parts if agrees(~part)), ("", True)):
+        ratio = factor(part)
+        if ratio not in (None, 1.0):
+            rest = "; all others agree" if text else ""
+            return (
+                f"positions{text} move by {ratio:.4g} times what {by} say: expected 1{rest}; mend units, times or "
+                "speeds first, then compare terms"
+            )
+    return ""

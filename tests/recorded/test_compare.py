@@ -1,5 +1,6 @@
 """A recording held against a law: what it explains, and the errors of other implementations, each in a sentence."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -223,6 +224,32 @@ def test_positions_that_move_otherwise_than_velocities_are_said_first(factor):
     assert float(texts[0].split(" times")[0].split()[-1]) == pytest.approx(factor, rel=0.02)
     right = fl.simulate(law, Q0, P0, (0.0, 2.0), t_eval=T)
     assert fl.compare(recording_of(right), law).findings == ()
+
+
+@pytest.mark.parametrize(
+    ("at", "factor", "text"),
+    [
+        (np.s_[:, 5], -1.0, r"of agent 5 move by -1\.0\d+ times"),
+        (np.s_[:, :, 1], 1000.0, r"along y move by 0\.00101 times"),
+        (np.s_[30:50], -1.0, r"from t = 0\.58 to 1 move by -0\.998\d times"),
+    ],
+    ids=["agent", "axis", "stretch"],
+)
+def test_one_agent_axis_or_stretch_whose_velocities_are_wrong_is_named(at, factor, text):
+    (q, p), noise = own_run(T), np.random.default_rng(0).normal(0.0, 1e-3, (len(T), len(P0), 2))
+    p[at] *= factor
+    (finding,) = fl.compare(fl.Recording(T, q, p, bound=1e-6), LAW).findings
+    assert re.match(f"positions {text} what velocities and times say: expected 1; all others agree", finding)
+    noisy = fl.compare(fl.Recording(T, q + noise, p, bound=1e-2), LAW)
+    assert re.match(f"positions {text.split(' move')[0]} move by", noisy.findings[0])
+
+
+@pytest.mark.parametrize("sd", [1e-3, 1e-2, 0.1, 1.0])
+def test_no_agent_axis_or_stretch_is_named_by_chance(sd):
+    (q, p), rng = own_run(T), np.random.default_rng(1)
+    for _ in range(5):
+        rec = fl.Recording(T, q + rng.normal(0.0, sd, q.shape), p + rng.normal(0.0, sd, q.shape), bound=5.0 * sd)
+        assert "all others agree" not in str(fl.compare(rec, LAW).findings)
 
 
 VICSEK = fl.HeadingAveraging(range=1.0, speed=0.3, dt=0.5, average="vectors")
