@@ -105,7 +105,7 @@ def _local_jerk(
             variances.reshape(count, -1, groups).sum(axis=2), nan=-1e300, neginf=-1e300, posinf=-1e300
         )
         np.add.at(whole[g], (piece, np.arange(series // groups)), variances)
-        for by in range(-_WINDOW, _WINDOW + 1):
+        for by in range(-min(_WINDOW, count - 1), min(_WINDOW, count - 1) + 1):
             here, far_slice = slice(max(-by, 0), count - max(by, 0)), slice(max(by, 0), count - max(-by, 0))
             weight = 1.0 - abs(by) / (_WINDOW + 1.0)
             local[g, here] += weight * np.where(piece[here] == piece[far_slice], variances[far_slice], 0.0)

@@ -167,6 +167,12 @@ def test_pieces_of_three_samples_have_no_velocity():
     assert (fit.known.sum(axis=0) == [9, 0]).all()
 
 
+@pytest.mark.parametrize("count", [4, 5, 6])
+def test_the_fewest_samples_have_velocities(count):
+    fit = motions(fl.Recording(T[:count], places(T[:count])[0], sd=1e-6))
+    assert (np.abs(fit.p - places(T[:count])[1]) <= 3.0 * fit.p_sd[:, :, None]).all()
+
+
 def test_units_do_not_change_what_is_smoothed(noisy):
     one, other = fl.Recording(T, noisy, sd=NOISE), fl.Recording(60.0 * T, 1e3 * noisy, sd=1e3 * NOISE)
     np.testing.assert_allclose(motions(one).p * 1e3 / 60.0, motions(other).p, rtol=1e-6, atol=1e-8)
