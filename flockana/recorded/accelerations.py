@@ -7,11 +7,13 @@ import numpy as np
 from flockana.base.errors import ArgumentError
 from flockana.base.value_checks import FloatArray
 from flockana.recorded.law_contributions import over_samples, over_steps
+from flockana.recorded.matching_windows import deviations
 from flockana.recorded.one_step_predictions import kinematic_scheme
 from flockana.recorded.recording import Recording
 from flockana.recorded.velocities import motions
 
 _FEWEST = 4  # samples for splines
+_TWINS = 3  # random draws of the stated errors, to see how far these lead
 
 
 class Accelerations(NamedTuple):
@@ -70,6 +72,32 @@ def mean_accelerations(rec: Recording, p: FloatArray) -> Accelerations:
     if scheme is not None:  # then u is the input at the beginning of each step
         return Accelerations("accelerations", rec.t[:-1], u, error, tuple(x[:-1] for x in states), scheme)
     return Accelerations("steps", rec.t[:-1], u, error, states, None)
+
+
+def noisy_twins(rec: Recording, data: Accelerations, law: Any) -> list[Accelerations]:
+    """Return what a flock under the law itself would show with the stated errors, in a few random draws."""
+    if (rec.sd is None and rec.bound is None) or data.basis == "map":
+        return []
+    rng, (t, q, p), exact = np.random.default_rng(0), data.states, data.of(lambda *state: law.flow(*state)[0])
+    if data.basis == "splines":
+        fit = motions(rec)
+        known_rows = fit.known.all(axis=1)
+        columns = [np.repeat(x[known_rows][:, :, None], rec.m, axis=2) for x in (fit.q_sd, fit.p_sd)]
+    else:
+        columns = [x.reshape(rec.q.shape)[: len(t)] for x in np.split(deviations(rec, velocities=True), 2, axis=1)]
+    twins = []
+    for _ in range(_TWINS):
+        place, speed = (x * rng.standard_normal(x.shape) for x in columns)
+        if data.basis == "splines":
+            change = data.error[:, :, None] * rng.standard_normal(q.shape)
+        elif data.basis == "steps" or data.scheme is not None:  # of velocities, whose errors are those of the states
+            last = columns[1][-1:] * rng.standard_normal((1, *q.shape[1:]))
+            speeds = speed if data.basis == "steps" else np.concatenate([speed, last])
+            change = np.diff(speeds, axis=0) / np.diff(rec.t)[: len(exact), None, None]
+        else:
+            change = np.zeros(1)
+        twins.append(data._replace(u=exact + change, states=(t, q + place, p + speed)))
+    return twins
 
 
 def _of_splines(rec: Recording) -> Accelerations:

@@ -9,7 +9,7 @@ from flockana.base.short_repr import ShortRepr
 from flockana.base.value_checks import FloatArray
 from flockana.base.vector_norms import lengths
 from flockana.laws.discrete import DiscreteLaw, ensure_law
-from flockana.recorded.accelerations import accelerations
+from flockana.recorded.accelerations import accelerations, noisy_twins
 from flockana.recorded.map_predictions import map_steps
 from flockana.recorded.one_step_predictions import scheme_by_law
 from flockana.recorded.recording import Recording, ensure_recording
@@ -172,7 +172,7 @@ def compare(rec: Recording, law: Any) -> Comparison:
         result = result._replace(findings=()) if remark else result  # what is left may be the noise
     else:
         data = accelerations(rec)
-        result, off = explained(data, continuous), ""
+        result, off = explained(data, continuous, noisy_twins(rec, data, continuous)), ""
         scheme = data.scheme
         if scheme is None and data.basis == "steps" and result.left < 0.5 * result.total:
             scheme = scheme_by_law(rec, continuous)

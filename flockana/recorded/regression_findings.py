@@ -1,5 +1,6 @@
 """Differences between a law and a recording found by regression: gains and forms, in sentences."""
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,7 +9,7 @@ from flockana.base.value_checks import FloatArray
 from flockana.base.vector_norms import lengths
 from flockana.recorded.accelerations import Accelerations
 from flockana.recorded.clustered_covariance import covariance_over_agents
-from flockana.recorded.law_contributions import contributions, remainder, variants
+from flockana.recorded.law_contributions import Contribution, contributions, remainder, variants
 
 _OTHER = 0.01  # relative difference from which on a gain is reported
 _CHANCE = 3e-5  # probability that noise alone shows a gain as larger, likewise
@@ -16,6 +17,7 @@ _CLEAR = 0.3  # of the residual's squares: a form that leaves no more is reporte
 _WORTH = 1e-4  # of all squares that a form must explain beyond the law's own
 _FITS = 0.99  # share explained by which a law fits
 _EXACT = 1e-12  # share of the squares below which nothing more is sought
+_GROWN = 2.0  # times what the stated errors do in any of a few draws: what they may do
 
 
 class Share(NamedTuple):
@@ -83,8 +85,12 @@ class Regression:
         return Solution(gains, errors, float(np.sum(residuals**2)), degrees_of_freedom)
 
 
-def explained(data: Accelerations, law: Any) -> Explained:
-    """Return the explained share of accelerations and the differences: other forms first, then gains."""
+def explained(data: Accelerations, law: Any, twins: Sequence[Accelerations] = ()) -> Explained:
+    """Return the explained share of accelerations and the differences: other forms first, then gains.
+
+    Errors of states make gains and the share smaller: `twins` of the data show by how much under the law itself, and
+    what is no more than twice that is no finding.
+    """
     from scipy.stats import t as student
 
     regression, parts = Regression(data, law), contributions(law)
@@ -95,19 +101,38 @@ def explained(data: Accelerations, law: Any) -> Explained:
     if total and left > _EXACT * total:
         columns, texts = _with_better_forms(regression, law, [part.name for part in parts], columns)
     solution = regression.solve(columns)
+    gain_changes, lost_share = _done_by_errors(twins, law, parts)
     shares = tuple(
-        Share(part.symbol, part.text, part.stated, float(c), float(e), regression.share(c * column))
-        for part, column, c, e in zip(parts, columns, solution.gains, solution.errors, strict=True)
+        Share(part.symbol, part.text, part.stated, float(c), float(np.hypot(e, change)), regression.share(c * column))
+        for part, column, c, e, change in zip(
+            parts, columns, solution.gains, solution.errors, gain_changes, strict=True
+        )
     )
     if left > _EXACT * total and solution.left < 0.5 * total:
         chance_limit = float(student.isf(_CHANCE, solution.freedom))
-        for share in shares:
-            if abs(share.found - share.stated) > max(chance_limit * share.error, _OTHER * abs(share.stated)):
+        for share, error, change in zip(shares, solution.errors, gain_changes, strict=True):
+            if abs(share.found - share.stated) > max(
+                chance_limit * error, _OTHER * abs(share.stated), _GROWN * float(change)
+            ):
                 texts.append(f"{share.text} is {share.symbol} = {share.found:.4g} here, {share.stated:.4g} in the law")
-    if total and 1.0 - solution.left / total < _FITS and data.basis != "splines":
+    left_share = solution.left / total if total else 0.0
+    if left_share > max(1.0 - _FITS, _GROWN * lost_share) and data.basis != "splines":
         explained_share = 1.0 - solution.left / total
         texts.append(f"{explained_share:.1%} is the most that these terms explain with any gains: another law acts")
     return Explained(residual, left, min(left, solution.left), total, shares, tuple(texts))
+
+
+def _done_by_errors(
+    twins: Sequence[Accelerations], law: Any, parts: Sequence[Contribution]
+) -> tuple[FloatArray, float]:
+    """Return the largest change of each gain, and of the unexplained share, that errors alone make in the twins."""
+    gain_changes, lost_share = np.zeros(len(parts)), 0.0
+    for twin in twins:
+        regression = Regression(twin, law)
+        solution = regression.solve([twin.of(part.acts) for part in parts])
+        gain_changes = np.maximum(gain_changes, np.abs(solution.gains - [part.stated for part in parts]))
+        lost_share = max(lost_share, solution.left / (regression.total or 1.0))
+    return gain_changes, lost_share
 
 
 def _with_better_forms(

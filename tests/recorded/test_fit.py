@@ -13,8 +13,8 @@ import flockana as fl
 from flockana.base.errors import ArgumentError
 from flockana.base.finite_differences import differences
 from flockana.recorded.law_parameters import FreeParameters
-from flockana.recorded.matching_windows import Window, _propagator, neighbouring_laws
-from flockana.recorded.shooting import NormalEquations, _refinement, _share
+from flockana.recorded.matching_windows import Window, _propagator, neighbouring_laws, windows
+from flockana.recorded.shooting import NormalEquations, Problem, _refinement, _share
 from tools import fit_coverage
 
 TRUE = fl.Gains(c1_alpha=20.0, c2_alpha=6.0, c1_gamma=1.5, c2_gamma=1.0)
@@ -189,8 +189,22 @@ def test_intervals_hold_the_truth_and_are_about_as_wide_as_with_known_noise(kind
     assert np.median(ratios) < 1.5
 
 
+def test_slopes_that_overflow_are_refused():
+    """A pull so stiff that 64 pieces of a step do not carry the linearised solution."""
+    case = fit_coverage.few_frames(np.random.default_rng([3, 168]))
+    free = FreeParameters.of(case.law, case.free)
+    parts = windows(case.rec, 1.0, case.sd)
+    problem = Problem(parts, free.with_values, free.values)
+    assert np.isfinite(problem.slopes(free.values, [parts[0].start], 1, 0.1)[0]).all()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(ArgumentError, match="slopes of the law's solution overflow: expected other first para"):
+            problem.slopes(np.array([1e6, 1.0]), [parts[0].start], 1, 0.1)
+
+
+@pytest.mark.slow
 def test_a_profile_ends_where_slopes_overflow():
-    """Far from the truth damping is so stiff that the linearised solution overflows: no crash, no warning."""
+    """Far from the truth a pair is so stiff that its linearised solution overflows: no crash, no warning."""
     case = fit_coverage.few_frames(np.random.default_rng([3, 168]))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -199,6 +213,7 @@ def test_a_profile_ends_where_slopes_overflow():
     assert 0.0 < low < found.values["c2_alpha"] < high < 1e3
 
 
+@pytest.mark.slow
 def test_a_gain_pressed_to_nothing_has_an_end_above():
     """Where gains are small the pair flies apart, and linearised where it is out of range no sample would feel them."""
     case = fit_coverage.few_frames(np.random.default_rng([3, 86]))
