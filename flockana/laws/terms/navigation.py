@@ -82,8 +82,8 @@ class Navigation(Term):
         return np.sqrt(1.0 + np.einsum("ij,ij->i", x, x) / self.unit**2)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102
-        form, path = self._form, self.target.closed_path
-        if form is None or path is None or path.omega:  # only at rest or on a line it is exact to the last bit
+        form = self._straight_form
+        if form is None:
             (q_r, p_r), rate = self.target.state(t), self.target.rate(t)
             zeros = np.zeros_like(rate)
             t, form = 0.0, self._along(Harmonic(np.array([q_r, rate, zeros, zeros, p_r]), factor=0.0))
@@ -95,6 +95,12 @@ class Navigation(Term):
         head = [self.moving, self.unit or 0.0, c1.size, path.omega, path.factor]
         kernel_parameters = np.concatenate([head, path.terms.ravel(), c1, c2])
         return TermKernel(kernel.act, kernel.energy, kernel_parameters, np.empty((0, 0)), 0.0)
+
+    @cached_property
+    def _straight_form(self) -> TermKernel | None:
+        """Compiled form of a target at rest or on a line, where alone it is exact to the last bit; else None."""
+        path = self.target.closed_path
+        return None if path is None or path.omega else self._form
 
     @cached_property
     def _form(self) -> TermKernel | None:
