@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from flockana.jit import inlined, kernel, register_jitable, subroutine
+from flockana.jit import inlined, kernel, subroutine
 
 _MARGIN = 1.0 + 1e-6  # cells a little larger than the range, so that rounding never separates two that are within it
 _PER_AGENT, _AT_LEAST = 8.0, 256.0  # cells at most
@@ -111,16 +111,6 @@ def sort_into_grid(q, side):
     elif rows.size == 4:
         rows[0], rows[1], rows[2], rows[3] = ranks[1], ranks[2] - ranks[1], ranks[2], ranks[2] + ranks[1]
     return order, start, rows
-
-
-@register_jitable
-def later_in_row(start, rows, cell, i, row):
-    """Return begin and end of the sorted agents after agent i in its row of cells (`row` = -1) or in a later row."""
-    begin, end = i + np.uint64(1), start[cell + 2]
-    if row >= 0:
-        neighbour_cell = np.int64(cell) + np.int64(rows[row])
-        begin, end = start[neighbour_cell - 1], start[neighbour_cell + 2]
-    return begin, end
 
 
 @inlined
