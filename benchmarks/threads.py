@@ -25,7 +25,7 @@ def study(*, quick: bool) -> Found:
     for kind in ("lattice", "gas"):
         for n in (100_000,) if quick else (100_000, 1_000_000):
             with all_cores():
-                counts = [count for count in COUNTS if count <= cores()]
+                counts = [count for count in COUNTS if count <= max(cores(), 2)]
                 command = [sys.executable, "-m", "benchmarks.threads", kind, str(n), "2" if quick else "15"]
                 done = subprocess.run(
                     [*command, *map(str, counts)],
@@ -50,19 +50,8 @@ def _rows(name: str, n: int, counts: list[int], rounds: list[list[float]], asked
         note = f"serial share {serial:.2f}"
         if count == counts[-1] < 16:
             note += f": 8 cores would take {eight:.2f}, 16 {sixteen:.2f}, if nothing else were in the way"
-        rows.append(
-            Row(
-                STUDY,
-                f"{name}, {count} threads",
-                n,
-                value,
-                "ms",
-                "one core",
-                share,
-                asked if count == 2 else None,
-                note,
-            )
-        )
+        bound = asked if count == 2 else None
+        rows.append(Row(STUDY, f"{name}, {count} threads", n, value, "ms", "one core", share, bound, note))
     return rows
 
 

@@ -18,7 +18,9 @@ from flockana.laws.olfati_saber import Algorithm2
 STUDY = "Whole runs against C"
 DT, SKIN = 0.005, 1.0
 FEW, MANY = 10, 40  # steps: their difference is free of the start
-_START = "half of a short run is its start: the flock is checked, sorted and listed, its energy summed, its states kept"
+_START = (
+    "its start takes a fifth to two fifths: the flock is checked, sorted and listed, its energy summed, states kept"
+)
 _CHECKED = "each step is checked for pairs that meet within it, and the same bits are asked of every processor"
 
 

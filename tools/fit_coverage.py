@@ -9,7 +9,6 @@ Widths are compared with those of an oracle that knows the noise: the deviations
 """
 
 import json
-import os
 import sys
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -19,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import flockana as fl
+from flockana.ensemble.worker_processes import cores
 from flockana.recorded.fit import fit
 from flockana.recorded.law_parameters import FreeParameters
 from flockana.recorded.matching_windows import usual_window, windows
@@ -190,7 +190,7 @@ def main() -> None:
     found = [json.loads(line) for line in store.read_text().splitlines()] if store.exists() else []
     have = {(one["kind"], one["seed"]) for one in found}
     cases = [(name, seed) for seed in range(seeds) for name in sys.argv[3:] or KINDS]
-    with ProcessPoolExecutor(len(os.sched_getaffinity(0))) as pool, store.open("a") as file:
+    with ProcessPoolExecutor(cores()) as pool, store.open("a") as file:
         for done in as_completed([pool.submit(outcome, *case) for case in cases if case not in have]):
             found.append(done.result())
             file.write(json.dumps(found[-1]) + "\n")

@@ -114,6 +114,16 @@ def sort_into_grid(q, side):
 
 
 @inlined
+def later_in_row(start, rows, cell, i, row):
+    """Return begin and end of the sorted agents after agent i in its row of cells (`row` = -1) or in a later row."""
+    begin, end = i + np.uint64(1), start[cell + 2]
+    if row >= 0:
+        neighbour_cell = np.int64(cell) + np.int64(rows[row])
+        begin, end = start[neighbour_cell - 1], start[neighbour_cell + 2]
+    return begin, end
+
+
+@inlined
 def empty_cuts(n):
     """Return an array for the slab boundaries of n agents, set to one empty slab."""
     slab_cuts = np.empty((_SLABS if n >= LARGE else 1) + 2, np.int64)

@@ -13,7 +13,7 @@ from flockana.kernels.alpha import norm_alpha as norm  # bound
 from flockana.kernels.alpha import pair_alpha_potential as potential  # bound
 from flockana.kernels.alpha import pair_alpha_slope as slope  # bound
 from flockana.kernels.alpha import stress_alpha as pair  # bound
-from flockana.kernels.cell_grid import cut_into_slabs, empty_cuts, sort_into_grid
+from flockana.kernels.cell_grid import cut_into_slabs, empty_cuts, later_in_row, sort_into_grid
 
 NORMED = True  # bound
 OWN = np.zeros(0, f"S{crc32(__name__.encode()) % 2**24 + 1}")  # as in `flockana.kernels.pair_sums`
@@ -42,10 +42,7 @@ def _energy_in_slab(own, low, high, start, rows, x, limit, numbers, sums):
     for cell in range(low, high):
         for i in range(start[cell], start[cell + 1]):
             for row in range(-1, np.int64(rows.size)):
-                begin, end = i + np.uint64(1), start[cell + 2]
-                if row >= 0:
-                    neighbour_cell = np.int64(cell) + np.int64(rows[row])
-                    begin, end = start[neighbour_cell - 1], start[neighbour_cell + 2]
+                begin, end = later_in_row(start, rows, cell, i, row)
                 for j in range(begin, end):
                     squared_value = square_between(x, i, j)
                     if squared_value < limit:

@@ -14,7 +14,7 @@ from flockana.jit import inlined, kernel, parallel, prange, register_jitable, su
 from flockana.kernels.alpha import norm_alpha as norm  # bound
 from flockana.kernels.alpha import pair_alpha_potential as potential  # bound
 from flockana.kernels.alpha import stress_alpha as pair  # bound
-from flockana.kernels.cell_grid import cut_into_slabs, empty_cuts, sort_into_grid
+from flockana.kernels.cell_grid import cut_into_slabs, empty_cuts, later_in_row, sort_into_grid
 from flockana.kernels.pair_helpers import BLOCK
 from flockana.kernels.pair_helpers import apart_2 as apart  # bound
 from flockana.kernels.pair_helpers import as_they_are as as_tuple  # bound
@@ -185,10 +185,7 @@ def _sweep(cells, start, rows, flock, r2, par, gains, pairs, room):
     for cell in range(cells[0], cells[1]):
         for i in range(start[cell], start[cell + 1]):
             for row in range(-1, np.int64(rows.size)):
-                begin, end = i + np.uint64(1), start[cell + 2]
-                if row >= 0:
-                    neighbour_cell = np.int64(cell) + np.int64(rows[row])
-                    begin, end = start[neighbour_cell - 1], start[neighbour_cell + 2]
+                begin, end = later_in_row(start, rows, cell, i, row)
                 for j in range(begin, end):
                     squared_value = 0.0
                     for c in range(M):

@@ -10,7 +10,7 @@ import numpy as np
 
 from flockana.jit import inlined, kernel, register_jitable, subroutine
 from flockana.kernels.agent_sums import slope_along
-from flockana.kernels.cell_grid import empty_cuts, sort_into_grid
+from flockana.kernels.cell_grid import empty_cuts, later_in_row, sort_into_grid
 
 
 class Pairs(NamedTuple):
@@ -61,10 +61,7 @@ def list_cells(x, grid, limit, cells, lists, count):
             if count + candidates > first_agents.size:
                 return CROWDED if count + candidates > MOST else -(count + candidates + 2)
             for row in range(-1, np.int64(rows.size)):
-                low, high = i + np.uint64(1), start[cell + 2]
-                if row >= 0:
-                    neighbour_cell = np.int64(cell) + np.int64(rows[row])
-                    low, high = start[neighbour_cell - 1], start[neighbour_cell + 2]
+                low, high = later_in_row(start, rows, cell, i, row)
                 for j in range(low, high):
                     squared_value = 0.0
                     for c in range(m):

@@ -10,7 +10,7 @@ from flockana.recorded.law_contributions import over_samples, over_steps
 from flockana.recorded.matching_windows import deviations
 from flockana.recorded.one_step_predictions import kinematic_scheme
 from flockana.recorded.recording import Recording
-from flockana.recorded.velocities import motions
+from flockana.recorded.velocities import Motions, motions
 
 _FEWEST = 4  # samples for splines
 _TWINS = 3  # random draws of the stated errors, to see how far these lead
@@ -74,29 +74,33 @@ def mean_accelerations(rec: Recording, p: FloatArray) -> Accelerations:
     return Accelerations("steps", rec.t[:-1], u, error, states, None)
 
 
-def noisy_twins(rec: Recording, data: Accelerations, law: Any) -> list[Accelerations]:
-    """Return what a flock under the law itself would show with the stated errors, in a few random draws."""
-    if (rec.sd is None and rec.bound is None) or data.basis == "map":
+def drawn_errors(rec: Recording, fit: Motions | None = None) -> list[tuple[FloatArray, FloatArray]]:
+    """Return a few draws of the stated errors of positions and velocities, or of those of splines; none if unstated."""
+    if rec.sd is None and rec.bound is None:
         return []
-    rng, (t, q, p), exact = np.random.default_rng(0), data.states, data.of(lambda *state: law.flow(*state)[0])
-    if data.basis == "splines":
-        fit = motions(rec)
-        known_rows = fit.known.all(axis=1)
-        columns = [np.repeat(x[known_rows][:, :, None], rec.m, axis=2) for x in (fit.q_sd, fit.p_sd)]
+    if fit is None:
+        place, speed = (x.reshape(rec.q.shape) for x in np.split(deviations(rec, velocities=True), 2, axis=1))
     else:
-        columns = [x.reshape(rec.q.shape)[: len(t)] for x in np.split(deviations(rec, velocities=True), 2, axis=1)]
+        place, speed = fit.q_sd[:, :, None], fit.p_sd[:, :, None]
+    rng = np.random.default_rng(0)
+    return [(place * rng.standard_normal(rec.q.shape), speed * rng.standard_normal(rec.q.shape)) for _ in range(_TWINS)]
+
+
+def noisy_twins(rec: Recording, data: Accelerations, law: Any) -> list[tuple[Accelerations, Any]]:
+    """Return what a flock under the law itself would show with the stated errors, in a few draws, and the law."""
+    fit = motions(rec) if data.basis == "splines" else None
+    rows = slice(len(data.t)) if fit is None else fit.known.all(axis=1)
+    (t, q, p), exact, rng = data.states, data.of(lambda *state: law.flow(*state)[0]), np.random.default_rng(1)
     twins = []
-    for _ in range(_TWINS):
-        place, speed = (x * rng.standard_normal(x.shape) for x in columns)
-        if data.basis == "splines":
-            change = data.error[:, :, None] * rng.standard_normal(q.shape)
-        elif data.basis == "steps" or data.scheme is not None:  # of velocities, whose errors are those of the states
-            last = columns[1][-1:] * rng.standard_normal((1, *q.shape[1:]))
-            speeds = speed if data.basis == "steps" else np.concatenate([speed, last])
-            change = np.diff(speeds, axis=0) / np.diff(rec.t)[: len(exact), None, None]
+    for place, speed in drawn_errors(rec, fit):
+        if fit is not None:
+            u = exact + data.error[:, :, None] * rng.standard_normal(exact.shape)
+        elif data.basis == "steps" or data.scheme is not None:  # differences of velocities that have errors
+            u = exact + np.diff(speed, axis=0) / np.diff(rec.t)[:, None, None]
         else:
-            change = np.zeros(1)
-        twins.append(data._replace(u=exact + change, states=(t, q + place, p + speed)))
+            u = exact
+        places, speeds = (x if data.basis == "steps" else x[rows] for x in (place, speed))
+        twins.append((data._replace(u=u, states=(t, q + places, p + speeds)), law))
     return twins
 
 

@@ -10,7 +10,7 @@ from flockana.base.value_checks import FloatArray
 from flockana.base.vector_norms import lengths
 from flockana.laws.discrete import DiscreteLaw, ensure_law
 from flockana.recorded.accelerations import accelerations, noisy_twins
-from flockana.recorded.map_predictions import map_steps
+from flockana.recorded.map_predictions import map_steps, noisy_map_twins
 from flockana.recorded.one_step_predictions import scheme_by_law
 from flockana.recorded.recording import Recording, ensure_recording
 from flockana.recorded.regression_findings import Share, explained
@@ -167,7 +167,8 @@ def compare(rec: Recording, law: Any) -> Comparison:
     of_own = isinstance(checked_law, DiscreteLaw) and not checked_law.approximates and states.p is not None
     if continuous is None or of_own:
         data, steps, led, remark = map_steps(states, checked_law)
-        result, off = explained(data, steps), _position_finding(states, led, f"steps of {checked_law.title}")
+        result = explained(data, steps, noisy_map_twins(states, checked_law, steps))
+        off = _position_finding(states, led, f"steps of {checked_law.title}")
         notes += [remark] if remark else []
         result = result._replace(findings=()) if remark else result  # what is left may be the noise
     else:

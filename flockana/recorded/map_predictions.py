@@ -8,7 +8,7 @@ import numpy as np
 
 from flockana.base.errors import ArgumentError
 from flockana.base.value_checks import FloatArray
-from flockana.recorded.accelerations import Accelerations, mean_accelerations
+from flockana.recorded.accelerations import Accelerations, drawn_errors, mean_accelerations
 from flockana.recorded.one_step_predictions import predicted
 from flockana.recorded.recording import Recording
 
@@ -46,3 +46,13 @@ def map_steps(rec: Recording, law: Any) -> tuple[Accelerations, MapSteps, FloatA
     states = (rec.t[:-1], rec.q[:-1], rec.p[:-1])
     data = mean_accelerations(rec, rec.p)._replace(basis="map", states=states, scheme=None)
     return data, MapSteps(law.title, inputs_by_time), q - rec.q[:-1], remark
+
+
+def noisy_map_twins(rec: Recording, law: Any, steps: MapSteps) -> list[tuple[Accelerations, MapSteps]]:
+    """Return what a flock under the map itself would show with the stated errors, in a few draws, led on from there."""
+    assert rec.p is not None  # as every recording that a map is compared with
+    twins, h, exact = [], np.diff(rec.t)[:, None, None], np.array(list(steps.accelerations.values()))
+    for place, speed in drawn_errors(rec):
+        data, noisy_steps, _, _ = map_steps(replace(rec, q=rec.q + place, p=rec.p + speed), law)
+        twins.append((data._replace(u=exact + np.diff(speed, axis=0) / h), noisy_steps))
+    return twins

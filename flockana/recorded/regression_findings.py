@@ -20,6 +20,9 @@ _EXACT = 1e-12  # share of the squares below which nothing more is sought
 _GROWN = 2.0  # times what the stated errors do in any of a few draws: what they may do
 
 
+Twin = tuple[Accelerations, Any]  # of a flock under the law with the stated errors, and the law or map from its states
+
+
 class Share(NamedTuple):
     """Contribution of a part of the law: its gain in the law and in the recording, and its share of the motion."""
 
@@ -85,7 +88,7 @@ class Regression:
         return Solution(gains, errors, float(np.sum(residuals**2)), degrees_of_freedom)
 
 
-def explained(data: Accelerations, law: Any, twins: Sequence[Accelerations] = ()) -> Explained:
+def explained(data: Accelerations, law: Any, twins: Sequence[Twin] = ()) -> Explained:
     """Return the explained share of accelerations and the differences: other forms first, then gains.
 
     Errors of states make gains and the share smaller: `twins` of the data show by how much under the law itself, and
@@ -101,7 +104,7 @@ def explained(data: Accelerations, law: Any, twins: Sequence[Accelerations] = ()
     if total and left > _EXACT * total:
         columns, texts = _with_better_forms(regression, law, [part.name for part in parts], columns)
     solution = regression.solve(columns)
-    gain_changes, lost_share = _done_by_errors(twins, law, parts)
+    gain_changes, lost_share = _done_by_errors(twins, parts)
     shares = tuple(
         Share(part.symbol, part.text, part.stated, float(c), float(np.hypot(e, change)), regression.share(c * column))
         for part, column, c, e, change in zip(
@@ -111,9 +114,8 @@ def explained(data: Accelerations, law: Any, twins: Sequence[Accelerations] = ()
     if left > _EXACT * total and solution.left < 0.5 * total:
         chance_limit = float(student.isf(_CHANCE, solution.freedom))
         for share, error, change in zip(shares, solution.errors, gain_changes, strict=True):
-            if abs(share.found - share.stated) > max(
-                chance_limit * error, _OTHER * abs(share.stated), _GROWN * float(change)
-            ):
+            least = max(chance_limit * error, _OTHER * abs(share.stated), _GROWN * float(change))
+            if abs(share.found - share.stated) > least:
                 texts.append(f"{share.text} is {share.symbol} = {share.found:.4g} here, {share.stated:.4g} in the law")
     left_share = solution.left / total if total else 0.0
     if left_share > max(1.0 - _FITS, _GROWN * lost_share) and data.basis != "splines":
@@ -122,14 +124,12 @@ def explained(data: Accelerations, law: Any, twins: Sequence[Accelerations] = ()
     return Explained(residual, left, min(left, solution.left), total, shares, tuple(texts))
 
 
-def _done_by_errors(
-    twins: Sequence[Accelerations], law: Any, parts: Sequence[Contribution]
-) -> tuple[FloatArray, float]:
+def _done_by_errors(twins: Sequence[Twin], parts: Sequence[Contribution]) -> tuple[FloatArray, float]:
     """Return the largest change of each gain, and of the unexplained share, that errors alone make in the twins."""
     gain_changes, lost_share = np.zeros(len(parts)), 0.0
-    for twin in twins:
-        regression = Regression(twin, law)
-        solution = regression.solve([twin.of(part.acts) for part in parts])
+    for data, law in twins:
+        regression = Regression(data, law)
+        solution = regression.solve([data.of(part.acts) for part in contributions(law)])
         gain_changes = np.maximum(gain_changes, np.abs(solution.gains - [part.stated for part in parts]))
         lost_share = max(lost_share, solution.left / (regression.total or 1.0))
     return gain_changes, lost_share

@@ -143,7 +143,8 @@ def filled(rec: _Recording, most: float | None, longest: float | None) -> _Recor
     fit = motions(rec) if rec.bound is None else None
     name, stated_value = ("bound", rec.bound) if fit is None else ("sd", rec.sd if rec.sd is not None else fit.noise)
     error: FloatArray = np.broadcast_to(np.asarray(stated_value, dtype=np.float64), rec.present.shape).copy()
-    p_name = f"p_{name}" if fit is not None or not rec.smoothed else "p_sd"
+    is_p_stated = fit is not None or not rec.smoothed  # no bound holds of smoothed velocities
+    p_name = f"p_{name}" if is_p_stated else "p_sd"
     p, speed = rec.p, getattr(rec, p_name)
     if p is None:  # those of the smoothing splines, or none that a bound holds of
         p = np.full(rec.q.shape, np.nan) if fit is None else fit.p
@@ -153,7 +154,7 @@ def filled(rec: _Recording, most: float | None, longest: float | None) -> _Recor
     for i, gap, duration in _gaps(rec):
         if duration <= reach:
             gap_ends, fractions = [gap.start - 1, gap.stop], (rec.t[gap] - rec.t[gap.start - 1]) / duration
-            off_p = slip[gap_ends, i] if fit is not None or not rec.smoothed else np.full(2, np.inf)  # no bound holds
+            off_p = slip[gap_ends, i] if is_p_stated else np.full(2, np.inf)
             ends = _Ends(rec.q[gap_ends, i], p[gap_ends, i], error[gap_ends, i], off_p)
             q[gap, i], error[gap, i], p[gap, i], slip[gap, i] = _bridge(fractions, duration, ends, most)
     change: dict[str, Any] = {"q": q, "u": None, name: error}

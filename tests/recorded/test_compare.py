@@ -325,3 +325,26 @@ def test_half_a_gain_is_a_finding_in_the_same_noise():
     (text, *_) = fl.compare(fl.Recording(t, q, p, sd=0.01, p_sd=0.01), stated).findings
     gain = float(re.fullmatch(r"pair force is c1α = (.*) here, 60 in the law", text).group(1))
     assert gain == pytest.approx(28.0, abs=1.0)
+
+
+@pytest.mark.parametrize("law", [fl.HeadingAveraging(), fl.ZoneFlocking()])
+@pytest.mark.parametrize("sd", [1e-3, 1e-2])
+def test_stated_noise_alone_is_no_finding_of_a_map(law, sd):
+    rng = np.random.default_rng(0)
+    q0, p0 = rng.uniform(0.0, 10.0, (20, 2)), rng.normal(0.0, 1.0, (20, 2))
+    if isinstance(law, fl.HeadingAveraging):
+        p0 *= law.speed / lengths(p0)[:, None]
+    run = fl.simulate(law, q0, p0, (0.0, 30.0 * law.dt))
+    noisy = [x + rng.normal(0.0, sd, x.shape) for x in (run.q, run.p)]
+    found = fl.compare(fl.Recording(run.t, *noisy, sd=sd, p_sd=sd), law)
+    assert found.basis == "map"
+    assert found.findings == ()
+
+
+def test_another_map_is_a_finding_in_little_noise():
+    law, rng = fl.HeadingAveraging(), np.random.default_rng(0)
+    q0, p0 = rng.uniform(0.0, 10.0, (20, 2)), rng.normal(0.0, 1.0, (20, 2))
+    run = fl.simulate(law, q0, p0 * law.speed / lengths(p0)[:, None], (0.0, 30.0 * law.dt))
+    noisy = [x + rng.normal(0.0, 1e-6, x.shape) for x in (run.q, run.p)]
+    rec = fl.Recording(run.t, *noisy, sd=1e-6, p_sd=1e-6)
+    assert "another law acts" in fl.compare(rec, replace(law, range=3.0)).findings[-1]

@@ -1,6 +1,7 @@
 """Feedforward of the γ-agent's acceleration to every agent, needed to follow a varying velocity."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -31,7 +32,7 @@ class TargetFeedforward(Term):
         """Return the time features of the γ-agent's motion."""
         return (target_feature(self.target),)
 
-    @property
+    @cached_property
     def path(self) -> Harmonic:
         """The γ-agent's path in closed form."""
         path = self.target.closed_path
