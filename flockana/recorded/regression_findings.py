@@ -114,8 +114,8 @@ def explained(data: Accelerations, law: Any, twins: Sequence[Twin] = ()) -> Expl
     if left > _EXACT * total and solution.left < 0.5 * total:
         chance_limit = float(student.isf(_CHANCE, solution.freedom))
         for share, error, change in zip(shares, solution.errors, gain_changes, strict=True):
-            least = max(chance_limit * error, _OTHER * abs(share.stated), _GROWN * float(change))
-            if abs(share.found - share.stated) > least:
+            smallest_finding = max(chance_limit * error, _OTHER * abs(share.stated), _GROWN * float(change))
+            if abs(share.found - share.stated) > smallest_finding:
                 texts.append(f"{share.text} is {share.symbol} = {share.found:.4g} here, {share.stated:.4g} in the law")
     left_share = solution.left / total if total else 0.0
     if left_share > max(1.0 - _FITS, _GROWN * lost_share) and data.basis != "splines":
