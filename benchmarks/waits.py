@@ -27,12 +27,11 @@ WAITS = {
 _FLOWS = "60 gradient flows of 10 to 40 agents take more than half of it, and loading the library a quarter"
 _RUNS = "eight runs with their verdicts, in workers each of which loads the library, too"
 _ENCLOSED = "verdicts are two thirds of it: eigenvalues of 300 coordinates, and enclosures between samples"
-_MARGINS = "491 spectra of 74 coordinates are most of it: no band of frequencies is left out"
 ASKED = {
     "flockana scenarios": Asked("<=", 1.2),
     "flockana verify E3": Asked("<=", 3.0, why=_FLOWS),
     "flockana ensemble phase --seeds 8": Asked("<=", 9.0, why=_RUNS),
-    "flockana stability hexagonal-patch:3 --delay": Asked("<=", 3.0, why=_MARGINS),
+    "flockana stability hexagonal-patch:3 --delay": Asked("<=", 3.0),
     "150 agents: all verdicts": Asked("<=", 5.0, why=_ENCLOSED),
 }
 _START = ("-c", "import numpy, scipy.integrate")

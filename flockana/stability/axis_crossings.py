@@ -18,13 +18,11 @@ import numpy as np
 
 from flockana.base.value_checks import ComplexArray, FloatArray
 from flockana.equilibria.curvature import EPS
+from flockana.stability.common_blocks import ROUNDINGS, Four
 from flockana.stability.eigenvalue_errors import eigen
-
-Four = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 
 CLOSE = 1e-6  # relative distance of the certified lower bound from the margin
 MOST = 3000  # spectra: a search that needs more certifies nothing
-_ROUNDINGS = 64.0  # of N eps: what counts as 0 in an entry of a matrix whose modes are taken
 _STEPS, _TINY = 12, 1e-14  # of Newton's method, and its last one, relative
 _LOW = 1e-6  # of the largest frequency of a crossing polynomial's coefficients: what is below is a neutral motion
 _DOUBLE = 1e-6  # relative: imaginary parts of roots of a crossing polynomial that touch the axis to rounding
@@ -41,6 +39,9 @@ class Crossing(NamedTuple):
     least: float
 
 
+NO_CROSSING = Crossing(inf, nan, inf)
+
+
 def modal_crossing(four: Four, neutral: float) -> Crossing | None:
     """Return the smallest delay at which a pole reaches the imaginary axis, mode by mode; None without common modes."""
     # |k₀ − ω² + jωd₀| = |k₁ + jωd₁|: a quadratic equation in ω² where they are symmetric, else of degree 4 in ω.
@@ -48,7 +49,7 @@ def modal_crossing(four: Four, neutral: float) -> Crossing | None:
     crossing = common_diagonals(four)
     if crossing is None:
         return None
-    best = Crossing(inf, nan, inf)
+    best = NO_CROSSING
     for k0, d0, k1, d1 in crossing.values.T.tolist():
         if k1 == 0.0 and d1 == 0.0:
             continue
@@ -87,7 +88,7 @@ def common_diagonals(four: Four) -> _Diagonals | None:
     """Return the diagonals of four jointly diagonalised or triangularised matrices; None if impossible."""
     from scipy.linalg import schur
 
-    magnitudes, rounding = [float(np.abs(x).max()) for x in four], _ROUNDINGS * EPS * len(four[0])
+    magnitudes, rounding = [float(np.abs(x).max()) for x in four], ROUNDINGS * EPS * len(four[0])
     used_parts = [(x, size) for x, size in zip(four, magnitudes, strict=True) if size > 0.0]
     symmetric = all(np.abs(x - x.T).max() <= rounding * size for x, size in used_parts)
     mixed_matrix = sum((x / (size * sqrt(k + 2.0)) for k, (x, size) in enumerate(used_parts)), np.zeros_like(four[0]))
@@ -108,7 +109,7 @@ def common_diagonals(four: Four) -> _Diagonals | None:
 def _frequencies(total: float, product: float, size: float) -> list[float]:
     """Return the ω > 0 with ω⁴ − total ω² + product = 0; double roots are recognised within rounding."""
     radicand = total * total - 4.0 * product
-    if radicand < -_ROUNDINGS * EPS * (size * size + 4.0 * abs(product)):
+    if radicand < -ROUNDINGS * EPS * (size * size + 4.0 * abs(product)):
         return []
     far_root = 0.5 * (total + (sqrt(max(radicand, 0.0)) if total >= 0.0 else -sqrt(max(radicand, 0.0))))
     return [sqrt(x) for x in (far_root, product / far_root if far_root else 0.0) if x > 0.0]
@@ -183,12 +184,17 @@ def _crossing_free(at: _Spectrum, angle: float) -> float:
 
 
 def least_crossing(
-    four: Four, low: float, high: float, advance: Callable[[float], object] = lambda _: None
+    four: Four,
+    low: float,
+    high: float,
+    advance: Callable[[float], object] = lambda _: None,
+    best_crossing: Crossing = NO_CROSSING,
 ) -> Crossing:
     """Return a bracket of the least crossing between frequencies `low` and `high`; low = 0 needs regular stiffness."""
     # The delay is one at which a root is on the axis; `least`, below which none is, is 0 if too many spectra are
-    # needed. `advance` is called with the share of the frequencies that is done.
-    best_crossing, todo, left = Crossing(inf, nan, inf), [(low, high)], MOST
+    # needed. `advance` is called with the share of the frequencies that is done. Later crossings than the best of
+    # elsewhere are not looked for.
+    todo, left = [(low, high)], MOST
     while todo:
         a, b = todo.pop()
         if b > _WIDE * a > 0.0:
@@ -215,16 +221,15 @@ def least_crossing(
 
 def _refined(four: Four, omega: float, at: _Spectrum, index: int, worst: float) -> tuple[Crossing, int]:
     """Return a crossing by Newton's method on Im μ(ω) = 0 (infinite if none), and the number of spectra."""
-    no_crossing = Crossing(inf, nan, inf)
     for step_number in range(_STEPS):
         value, slope = complex(at.values[index]), complex(at.slopes[index])
         frequency_step = -value.imag / slope.imag if slope.imag else inf
         if not 0.0 < omega + frequency_step < inf:
-            return no_crossing, step_number
+            return NO_CROSSING, step_number
         omega += frequency_step
         if abs(frequency_step) <= _TINY * omega:
             delay = phase(complex(value.real, 1.0) / complex(value.real, -1.0)) / omega
-            return (Crossing(delay, omega, (1.0 - CLOSE) * delay) if delay < worst else no_crossing), step_number
+            return (Crossing(delay, omega, (1.0 - CLOSE) * delay) if delay < worst else NO_CROSSING), step_number
         at = _spectrum(four, omega)
         index = int(np.argmin(np.abs(at.values - (value + frequency_step * slope))))
-    return no_crossing, _STEPS
+    return NO_CROSSING, _STEPS

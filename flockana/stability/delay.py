@@ -28,7 +28,15 @@ from flockana.base.value_checks import (
     ensure_nonnegative,
     ensure_numbers,
 )
-from flockana.stability.axis_crossings import CLOSE, common_diagonals, least_crossing, modal_crossing
+from flockana.stability.axis_crossings import (
+    CLOSE,
+    NO_CROSSING,
+    Crossing,
+    common_diagonals,
+    least_crossing,
+    modal_crossing,
+)
+from flockana.stability.common_blocks import Four, split_into_blocks
 from flockana.stability.cost_estimates import LIMIT
 from flockana.stability.eigenvalue_errors import eigenvalues
 from flockana.stability.linear_flock import LinearFlock
@@ -224,7 +232,8 @@ def delay_margin(system: DelaySystem, *, progress: bool = False, limit: float = 
 
     In closed form or by a polynomial for each mode where prompt and late parts share their modes, symmetric or not;
     else by a search over all frequencies that excludes whole intervals by a bound
-    (`flockana.stability.axis_crossings`): no band is too narrow for it. Parts that hear others and are not heard by
+    (`flockana.stability.axis_crossings`): no band is too narrow for it. A symmetric lattice is searched block by block,
+    one for each type of motion (`flockana.stability.common_blocks`). Parts that hear others and are not heard by
     them are looked at by themselves. Neutral motions are set apart; a flock that has any is searched from a millionth
     of its highest frequency on.
 
@@ -284,14 +293,28 @@ def _margin_of_part(system: DelaySystem, advance: Callable[[float], object]) -> 
     (k0, d0), (k1, d1) = system.prompt, system.late
     four = (k0 / unit / unit, d0 / unit, k1 / unit / unit, d1 / unit)
     stiffness = float(np.abs(four[0] + four[2]).max())
-    crossing = modal_crossing(four, NEUTRAL * stiffness if system.neutral else 0.0)
+    crossing = modal_crossing(four, neutral := NEUTRAL * stiffness if system.neutral else 0.0)
     if crossing is None:
         top = 1.01 * system.highest / unit
-        crossing = least_crossing(four, _LOWEST * top if system.neutral else 0.0, top, advance)
+        crossing = _crossing_of_blocks(four, neutral, (_LOWEST * top if system.neutral else 0.0, top), advance)
     delay = min(crossing.least, still_margin := _still_crossing(system) * unit)
     if still_margin < crossing.delay:
         return DelayMargin(still_margin / unit, 0.0, delay / unit)
     return DelayMargin(crossing.delay / unit, crossing.frequency * unit, delay / unit)
+
+
+def _crossing_of_blocks(
+    four: Four, neutral: float, band: tuple[float, float], advance: Callable[[float], object]
+) -> Crossing:
+    """Return the least crossing in a band of frequencies, block by block, in each beyond the best so far only."""
+    blocks, best, certified_delay = split_into_blocks(four), NO_CROSSING, inf
+    for k, block in enumerate(blocks):
+        crossing = modal_crossing(block, neutral)
+        if crossing is None:
+            crossing = least_crossing(block, *band, lambda share, k=k: advance((k + share) / len(blocks)), best)  # type: ignore[misc]
+        certified_delay = min(certified_delay, crossing.least)
+        best = min(best, crossing._replace(least=(1.0 - CLOSE) * crossing.delay))
+    return best._replace(least=certified_delay)
 
 
 def _still_crossing(system: DelaySystem) -> float:

@@ -136,7 +136,7 @@ def test_no_band_is_too_narrow(seed):
 
 
 def test_a_search_that_is_cut_short_says_at_most(monkeypatch):
-    q = find_equilibrium(LAW, hexagonal_spiral(7, 7.0)).q
+    q = find_equilibrium(LAW, hexagonal_spiral(9, 7.0)).q
     system = delay_system(LAW, q, delayed="neighbours")
     whole = delay_margin(system)
     assert whole.certified
