@@ -13,7 +13,7 @@ verify: .venv/.installed  ## run the catalogue, check every theorem, write repor
 test: .venv/.dev  ## formulas, theorems, laws, numbers and commands, in five minutes on two cores
 	$(BIN)/python -m pytest -n auto --dist worksteal -m "not slow"
 
-test-all: .venv/.dev  ## the whole test suite, with what kills processes, waits, drives tools, certifies and attacks
+test-all: .venv/.dev  ## the whole test suite, with what takes longer, kills processes, waits, drives tools, certifies and attacks
 	$(BIN)/python -m pytest -n auto --dist worksteal
 
 attack: .venv/.dev  ## attack the verdicts with thousands of new cases, for hours; ATTACK=N examples a test

@@ -60,7 +60,9 @@ def pytest_configure(config):
 
     gc.set_threshold(SELDOM)  # as in the program itself: to look through all that is imported takes a tenth of a suite
     config.addinivalue_line("markers", "attack: takes minutes; only with --attack")
-    config.addinivalue_line("markers", "slow: kills, waits, drives tools, certifies or attacks; not in `make test`")
+    config.addinivalue_line(
+        "markers", "slow: takes over 1.5 CPU s, kills, waits, drives tools or attacks; not in `make test`"
+    )
     if examples := config.getoption("attack"):
         if config.option.hypothesis_seed is None:
             config.option.hypothesis_seed = str(secrets.randbelow(2**32))

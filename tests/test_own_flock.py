@@ -197,6 +197,7 @@ def test_a_start_is_drawn_from_the_seed_by_whatever_shows_or_exports_it(tmp_path
         fl.player(3)
 
 
+@pytest.mark.slow
 def test_gif_lasts_as_long_as_asked(tmp_path):
     from PIL import Image
 

@@ -32,6 +32,7 @@ except SystemExit as end:
     assert python(code).splitlines()[-1] == "0 []"
 
 
+@pytest.mark.slow
 def test_a_run_is_verified_and_reported_without_loading_what_derives_solves_or_draws(tmp_path):
     code = f"""
 import sys

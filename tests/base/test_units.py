@@ -71,6 +71,7 @@ def test_scales_change_with_the_units(law: fl.Law) -> None:
     assert there.time == pytest.approx(here.time * TIME, rel=ROUNDING)
 
 
+@pytest.mark.slow
 def test_the_unit_of_sigma_1_stands_in_the_formulas_too() -> None:
     """Kernel and sympy agree on the law whose σ₁ counts in lengths of 3, and so do its vectors."""
     numbers = {"eps": 0.02, "h": 0.3, "a": 1.0, "b": 4.0, "d": 5.0, "r": 7.0, "unit": 3.0}

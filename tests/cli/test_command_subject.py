@@ -77,6 +77,7 @@ def test_a_claim_in_a_file_is_checked_searched_and_counted(mine, found, call, re
     )
 
 
+@pytest.mark.slow
 def test_every_command_that_takes_a_scenario_takes_a_flock_of_a_file(mine, call, found, tmp_path):
     assert found("run", "mine.py:flock", "-o", "run.nc")["t"] == [0.0, 1.0]
     assert found("verify", "mine.py:slow", "--on", "run.nc")["verdicts"][0]["claims"][0]["margin"] == -0.05
@@ -85,6 +86,7 @@ def test_every_command_that_takes_a_scenario_takes_a_flock_of_a_file(mine, call,
     assert call("animate", "mine.py:flock", "-o", "mine.gif", "--seconds", "1", "--fps", "2")[0] == 0
 
 
+@pytest.mark.slow
 def test_a_file_finds_the_modules_beside_it_and_so_do_worker_processes(mine, found, tmp_path):
     (tmp_path / "beside.py").write_text("reach = 7.0\n", encoding="utf-8")
     drawn = MINE.replace("[[0.0, 0.0], [7.0, 0.0]], [[0.0, 0.1], [0.0, 0.0]]", "start")

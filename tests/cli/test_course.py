@@ -18,6 +18,7 @@ def few(monkeypatch):
         monkeypatch.setattr(module, "sources", lambda: chosen)
 
 
+@pytest.mark.slow
 def test_notebooks_are_written_for_students_and_with_solutions(call, tmp_path):
     for arguments, has, lacks in (
         (("new",), "answered(jump", "grade(jump"),
@@ -47,6 +48,7 @@ def test_a_student_without_a_name_or_exercises_is_refused(refused, options):
     refused("expected a name, and exercises to number; slides have none", "new", *options)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("options", "book"),
     [

@@ -14,6 +14,7 @@ from tests.programs import ANSWERS_CTRL_C, CLI, interrupt, posix, program, until
 COMMAND = ("ensemble",)
 
 
+@pytest.mark.slow
 def test_it_prints_shares_and_writes_what_is_asked_for(call, tmp_path):
     given = ["hexagon", "--seeds", 4, "--theorem", "alpha-flocking", "--jobs", 1, "--store", "s.sqlite"]
     code, out, err = call(*given, "-o", "all.nc", "--plot", "all.png")

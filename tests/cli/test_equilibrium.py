@@ -144,6 +144,7 @@ def test_dead_zone_contacts_from_a_scenario_and_from_a_file(call, tmp_path):
     assert (again["kind"], again["coincident pairs"], 0.0 < again["strain"] < 0.1) == ("minimum", 0, True)
 
 
+@pytest.mark.slow
 def test_a_law_that_is_stepped_is_found_within_and_jumps_are_refused(call):
     code, _, err = call("dead-zone-hard", "--start", "start")
     assert (code, "ramp = 0: contacts sit where the force jumps" in err) == (2, True)

@@ -97,6 +97,7 @@ def test_every_builder_is_an_alpha_lattice_at_its_largest_ratio_and_the_scale_is
         assert given.r == pytest.approx(3.6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("source", "suffix"), [("bcc:1x1x1", "png"), ("line:1", "svg"), ("line:4", "pdf")])
 def test_a_picture_is_written_where_it_is_asked_for(call, tmp_path, source, suffix):
     code, out, err = call(source, "--plot", f"it.{suffix}")
@@ -109,6 +110,7 @@ def test_a_picture_is_written_where_it_is_asked_for(call, tmp_path, source, suff
         assert path.read_bytes()[:5] in (b"%PDF-", b"<?xml")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -252,6 +252,7 @@ def test_no_name_is_cut_and_what_was_expected_is_seen_at_any_width(call, offer, 
     assert ("rigour" in table) == (width == 80)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [40, 60])
 @pytest.mark.parametrize(
     ("arguments", "whole"),

@@ -80,6 +80,7 @@ def test_a_scenario_is_linearised_where_it_ends(found):
     assert one["spectral abscissa"] == pytest.approx(-1.96374976, rel=1e-7)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("arguments", [("hexagonal-patch:1", "--law", 2), ("fcc:1x1x1",), ("line:3", "--law", 2)])
 def test_pictures(call, tmp_path, arguments):
     code, out, err = call(*arguments, "--plot", "poles.png")

@@ -57,6 +57,7 @@ def test_a_check_takes_right_answers_and_refuses_wrong_ones(source, name):
     assert graded(...).status == "not answered"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
 def test_versions_of_a_lecture(source):
     books = {version: build.notebook(source, version) for version in build.VERSIONS}
@@ -205,6 +206,7 @@ def test_a_lecture_says_what_it_needs_aims_at_and_rests_on(source):
     assert "## Further reading\n\n- " in texts[-1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
 def test_a_students_copy_holds_neither_answers_nor_hints(source):
     text = json.dumps(build.notebook(source, "student"))
@@ -234,6 +236,7 @@ def test_a_number_that_is_not_exact_says_to_what_precision(source):
             assert "exactly" in said or "whole number" in said or "nearest integer" in said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
 def test_a_notebook_installs_flockana_where_it_is_missing_and_only_there(source, monkeypatch):
     address = "git+https://example.org/flockana"
@@ -255,6 +258,7 @@ def test_a_notebook_installs_flockana_where_it_is_missing_and_only_there(source,
         exec(bare.partition("    from pathlib")[0], {})
 
 
+@pytest.mark.slow
 def test_everything_that_a_lecture_needs_is_written_beside_it(tmp_path):
     """Lecture 11 imports its own law, whose proof imports `proofs`: neither is in the package."""
     written = build.write(tmp_path)

@@ -11,6 +11,7 @@ def code(book):
     return [cell for cell in book.cells if cell.cell_type == "code"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
 def test_otter_gives_all_points_to_the_hidden_test(source):
     book, asked = export.master(source, "otter"), list(build.exercises(source))
@@ -35,6 +36,7 @@ def test_otter_gives_all_points_to_the_hidden_test(source):
         assert raw.count(f"# END {mark}") == sum(text.startswith(f"# BEGIN {mark}") for text in raw)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
 def test_nbgrader_marks_every_answer_and_test(source):
     book, asked = export.master(source, "nbgrader"), list(build.exercises(source))

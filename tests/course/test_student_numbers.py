@@ -57,6 +57,7 @@ def cells_of(book, name):
     return [max(k for k in range(check) if tag in tags[k]) for tag in ("exercise", "solution")] + [check]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("number", "name"), CASES)
 def test_a_solution_with_own_numbers_passes_its_own_grader_and_no_other(number, name):
     source, rows = SOURCES[number], TABLE[number][name]
@@ -78,6 +79,7 @@ def test_a_solution_with_own_numbers_passes_its_own_grader_and_no_other(number, 
     assert passed == np.eye(len(books), dtype=bool).tolist()
 
 
+@pytest.mark.slow
 def test_numbers_vary_in_every_lecture_and_nothing_else():
     assert list(TABLE) == list(SOURCES)
     for number, source in SOURCES.items():

@@ -211,6 +211,7 @@ def test_calls_of_one_step_make_the_same_run(monkeypatch):
     np.testing.assert_allclose(one.q, many.q, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_law_that_changes_what_its_form_stands_for_is_stepped():
     class Told(targets.LinearTarget):
         """A γ-agent that lies about its velocity."""
@@ -317,6 +318,7 @@ print(clean)
 """
 
 
+@pytest.mark.slow
 @posix
 def test_an_alarm_during_a_compiled_run_raises_its_own_exception():
     """In a process of its own, which a kernel that gives Python more than numbers may kill."""

@@ -274,6 +274,7 @@ class TestRuns:
         run = simulate(law, q0, p0, (0.0, 3.0))
         np.testing.assert_allclose(run.p[-1], exact.p[-1], rtol=0.0, atol=5e-6 * np.abs(exact.p[-1]).max())
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("method", METHODS)
     def test_output_times_hide_nothing(self, method):
         options = {"dt": 0.02} if method == "RK4" else {}
@@ -290,6 +291,7 @@ class TestDelayed:
         with pytest.raises(ArgumentError, match=r"dt = 2: .* expected dt <= 0.\d+"):
             simulate(Delayed(DAMPED, 2.0), *HEAD_ON, (0.0, 14.0), dt=2.0)
 
+    @pytest.mark.slow
     def test_steps_short_enough_see_it(self):
         late, fine = (simulate(Delayed(DAMPED, 0.01), *HEAD_ON, (0.0, 14.0), dt=dt) for dt in (0.01, 0.0025))
         assert np.abs(late.p[-1] - HEAD_ON[1]).max() > 1.0
@@ -388,6 +390,7 @@ def no_room(q, reach, pairs):
     return CROWDED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["DOP853", "scipy-DOP853"])
 def test_pairs_too_many_for_a_list_cut_the_same_steps(method, monkeypatch):
     """Two that fly through each other's range in one long step, beside a third: checked without a list of pairs."""

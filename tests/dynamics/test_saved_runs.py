@@ -61,6 +61,7 @@ def test_no_shortened_or_longer_file_gives_other_numbers(whole, tmp_path):
     assert refused(path, whole + whole)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("bit", [0, 7, 31, 62])
 def test_without_that_line_the_checksums_name_what_is_damaged(tmp_path, bit):
     """As where another program wrote the file anew."""
@@ -76,6 +77,7 @@ def test_without_that_line_the_checksums_name_what_is_damaged(tmp_path, bit):
         Trajectory.load(path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "named"),
     [

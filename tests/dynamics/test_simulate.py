@@ -86,6 +86,7 @@ def test_rk4_steps(dt, steps):
     assert run.stats["dt"] == dt
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", METHODS)
 def test_every_method_agrees(method):
     """Tolerances 1e-8: global errors of 1e-5 for the low orders (RK23, and the stiff ones)."""

@@ -53,6 +53,7 @@ class TestBounds:
         assert farthest - 1e-6 < ends.cohesion_bound() < farthest + 1e-3
         assert ends.min_distance() < float(min_distances(ends.q).min()) - 0.1  # the samples alone would not tell
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("method", METHODS)
     def test_every_method_keeps_its_steps(self, method):
         options = {"method": method, "rtol": 1e-6} | ({"dt": 0.02} if method == "RK4" else {})

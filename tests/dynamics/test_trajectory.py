@@ -184,6 +184,7 @@ def tampered(path, **attributes):
     data.to_netcdf(path, engine="h5netcdf")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("attributes", "message"),
     [

@@ -78,6 +78,7 @@ def _surface(obstacle: Obstacle) -> np.ndarray:
     return np.concatenate([a + share * (b - a) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)])
 
 
+@pytest.mark.slow
 @EVERY
 def test_no_point_of_the_surface_is_closer(obstacle: Obstacle) -> None:
     """Sampled surfaces give the distance from above; the samples are dense enough for 0.1 in space."""

@@ -86,6 +86,7 @@ def test_a_contact_at_a_kink_is_degenerate_on_both_sides():
         assert spectrum(potential, q)[2:] == (0, 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("length", "time"), UNITS)
 @pytest.mark.parametrize(
     ("law", "q", "method", "expected"),

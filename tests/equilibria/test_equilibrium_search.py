@@ -26,6 +26,7 @@ def test_starts_have_the_scale_of_the_lattice():
     assert np.pi * np.linalg.norm(disc, axis=1).max() ** 2 == pytest.approx(400 * 49.0, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_search_reaches_harborths_count_and_finds_each_minimum_once():
     starts = random_starts(7, 2, 7.0, 12, density=3.0)
     found = search(LAW, starts)

@@ -7,6 +7,7 @@ from flockana.equilibria.lattice_collapse import CollapseDiagram, collapse_diagr
 from flockana.interactions import AlphaInteraction
 
 
+@pytest.mark.slow
 def test_collapse_by_equilibria():
     diagram = collapse_diagram(AlphaInteraction(), [7, 19], [0.1, 2.0, 4.5])
     assert isinstance(diagram, CollapseDiagram)

@@ -67,6 +67,7 @@ def test_away_from_rest_it_says_so():
     assert "map" in poles(fl.scenario("headings-part").run())["note"]
 
 
+@pytest.mark.slow
 def test_the_threshold_is_marked_where_a_pull_squeezes():
     found = told(Case("law", "Algorithm2", n=7, duration=0.2))
     assert found["form"][0]["ratio"] is True

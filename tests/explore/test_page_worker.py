@@ -98,6 +98,7 @@ def started():
     return process, mine
 
 
+@pytest.mark.slow
 def test_a_process_of_its_own_answers_and_ends_with_the_server():
     """Four seconds: it is the only test that starts one without a browser."""
     process, mine = started()
@@ -110,6 +111,7 @@ def test_a_process_of_its_own_answers_and_ends_with_the_server():
     assert process.exitcode == 0
 
 
+@pytest.mark.slow
 def test_where_the_server_is_ended_by_force_it_ends_without_a_word(capfd):
     process, mine = started()
     mine.close()  # before it says that it is ready

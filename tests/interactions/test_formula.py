@@ -55,6 +55,7 @@ def test_the_papers_law_as_a_formula_is_the_papers_law():
     assert np.abs(mine - theirs).max() < 1e-12 * np.abs(theirs).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("potential", "parameters"),
     [
@@ -110,6 +111,7 @@ FAULTS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("potential", "adjacency", "faults"), FAULTS)
 def test_what_a_formula_lacks_is_named(potential, adjacency, faults):
     law = fl.pair_law(potential, adjacency=adjacency, range=3.0, length=1.0)
@@ -146,6 +148,7 @@ test_bad_formulas = refused(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "formula",
     ["exp(exp(1e9*s))", "exp(exp(exp(s)))", "*".join(f"sin({k}*s)" for k in range(1, 60)), "sin(" * 90 + "s" + ")" * 90,
@@ -376,6 +379,7 @@ def test_a_caret_is_no_power():
         fl.pair_law("k*s^2", adjacency=0, range=3.0, length=1.0, parameters={"k": 1.0})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", ["1e-3", "1e-5"])
 def test_a_steep_logistic_switch_is_computed_without_overflow(width):
     """1/(1 + exp(−(s − 1)/w)) = (1 + tanh((s − 1)/2w))/2, whose slope is sech²/4w."""

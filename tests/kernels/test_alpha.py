@@ -44,6 +44,7 @@ def compare(q, p, pair):
     assert two.energy_rate(t, q, p) == pytest.approx(-0.7 * dissipation - 1.9 * np.sum(v * v), rel=REL)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [1, 2, 3])
 @pytest.mark.parametrize("n", [1, 2, 3, 50])
 @pytest.mark.parametrize("pair", PAIRS)

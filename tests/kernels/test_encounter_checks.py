@@ -165,6 +165,7 @@ def test_pairs_of_a_list_cut_a_step_as_they_do_with_all_control_points(m, speed,
     assert cut > 0 or speed * bend < 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("large", [False, True])
 @pytest.mark.parametrize("listed", ["all", "none yet", "too few", "too many for memory"])
 @pytest.mark.parametrize("m", [1, 2, 3])

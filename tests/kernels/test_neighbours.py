@@ -105,6 +105,7 @@ def test_rounding_of_huge_coordinates_skips_no_pair():
     assert misses == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("far", [-1.5 * 2.0**43, 1.5 * 2.0**43])
 def test_an_agent_far_away_takes_no_pair_from_a_flock_whose_coordinates_are_finer(far):
     """Partners just within range, 1.5·2⁴³ from an agent beside which their places are known to 0.002 only."""

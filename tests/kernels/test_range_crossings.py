@@ -30,6 +30,7 @@ def by_roots(h, start, end):
     return bool((out & (square < 0.0)).any())
 
 
+@pytest.mark.slow
 def test_what_is_certain_is_so_along_the_quintic():
     wrong = []
     for seed in range(300):

@@ -132,6 +132,7 @@ def test_a_small_flock_compiles_nothing_for_threads_or_slabs():
     same(SMALL)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [1, 2, 3])
 @pytest.mark.parametrize("longest", [0, -1])
 def test_slabs_hold_every_pair_and_even_ones_share_no_agent(m, longest):

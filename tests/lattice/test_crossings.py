@@ -139,6 +139,7 @@ def configurations(m: int, coarse: bool):
     return points.flatmap(linked)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [1, 2, 3])
 @pytest.mark.parametrize("coarse", [True, False])
 def test_all_crossings_are_those_of_rational_arithmetic(m, coarse):
@@ -150,6 +151,7 @@ def test_all_crossings_are_those_of_rational_arithmetic(m, coarse):
     check()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("m", "n"), [(1, 12), (2, 40), (3, 25)])
 def test_random_nets_and_one_link_across_all_of_them(m, n):
     rng = np.random.default_rng(m)

@@ -48,6 +48,7 @@ def test_a_moving_past_is_heard():
     assert (run.p[1, 0, 0] - 4.0) / run.t[1] == pytest.approx(u, abs=5e-3)
 
 
+@pytest.mark.slow
 def test_a_swing_that_was_there_before_goes_on():
     """At the margin cos ωt is a solution: from its own history it goes on, from a motion with its velocity it does not.
 
@@ -77,6 +78,7 @@ def test_a_short_delay_is_none(late):
         np.testing.assert_allclose(steps.q[-1], simulate(RK4(LAW, 0.01), q, p, (0.0, 0.3)).q[-1], rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_what_is_heard_by_hand():
     """Two agents on a line, the first step from rest: each sees where the other was, "neighbours" itself where it is.
 

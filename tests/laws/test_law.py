@@ -101,6 +101,7 @@ def laws(m):
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [1, 2, 3])
 @pytest.mark.parametrize("name", laws(1))
 def test_the_jacobian_is_the_complex_step_derivative(name, m):

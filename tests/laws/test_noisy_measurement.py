@@ -10,6 +10,7 @@ ALONE = Gains(c1_alpha=0.0, c2_alpha=0.0, c1_gamma=4.0, c2_gamma=2.0)
 LAW = Algorithm2(gains=ALONE, target=StaticTarget((0.0, 0.0)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dt", [0.02, 0.005])
 def test_noise_on_position_acts_as_a_force_that_many_times_as_strong(dt):
     """x'' = −k (x + σ ξ) − d x': variance (kσ)²/2dk of the place, whatever the step."""

@@ -11,6 +11,7 @@ LAW = Algorithm2(target=StaticTarget((30.0, 0.0)))
 Q = 0.8 * hexagonal_patch(1, 7.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", [Algorithm1(), LAW])
 @pytest.mark.parametrize("by", ["length", "component"])
 def test_inputs_stay_within_the_limit_and_the_balance_is_kept(law, by):

@@ -43,6 +43,7 @@ def test_a_film_may_have_more_frames_than_a_map_has_steps(tmp_path):
     assert len(shown) == 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [1, 2, 3])
 def test_a_gif_holds_every_frame_of_one_size(m, tmp_path):
     seen = []
@@ -96,6 +97,7 @@ def test_what_cannot_be_filmed_is_refused(name, options, error, message, tmp_pat
         ensure_film(tmp_path / name, **({"seconds": 1.0, "fps": 10.0} | options))
 
 
+@pytest.mark.slow
 def test_the_axes_hold_still_in_the_file(tmp_path):
     path = plots.animate(a_run(2), tmp_path / "run.gif", seconds=0.5, fps=10)
     edges = []

@@ -12,6 +12,7 @@ def run():
     return fl.simulate(fl.Algorithm1(), [[0.0, 0.0], [7.5, 0.0]], np.zeros((2, 2)), (0, 30))
 
 
+@pytest.mark.slow
 def test_pdf_has_no_type_3_fonts(run, tmp_path):
     path = fl.plots.save(fl.plots.panel(run)[0], tmp_path / "panel.pdf", column="ieee-wide")
     data = path.read_bytes()

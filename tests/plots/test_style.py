@@ -67,6 +67,7 @@ def test_a_name_that_would_take_three_lines_becomes_its_symbol_and_unit():
 OF_A_RUN = ["snapshot", "centre_path", "energy_residual", "distances"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", OF_A_RUN)
 @pytest.mark.parametrize("m", [2, 3])
 def test_nothing_that_is_written_beside_a_drawing_is_cut_off(name, m):

@@ -134,6 +134,7 @@ def test_every_law_is_here():
     assert all(law.title == name for name, (law, _) in LAWS.items())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("law", "symmetry"), [(law, s) for law, (_, has) in LAWS.items() for s in sorted(has)])
 @settings(max_examples=10)
 @given(st.integers(0, 2**32 - 1))

@@ -14,6 +14,7 @@ PATH, RING = ((0, 1), (1, 2)), ((0, 1), (1, 2), (2, 3), (3, 0))
 MAP = pages.course_map(build.lectures())
 
 
+@pytest.mark.slow
 def test_all_pages_are_delivered_with_solutions_and_to_graders_only(tmp_path):
     bank = {"exam_bank.md", "exam_bank_solutions.md", "project.md"}
     assert set(PAGES) == {"syllabus.md", "notes.md", "exam.md", "exam_solutions.md"} | bank

@@ -31,6 +31,7 @@ from tests.proofs.steps import failing
 PROOFS = (constant_acceleration, net_measures, second_order_modes, speed_bound, stand_off, tracking_gain, turned_axes)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("proof", PROOFS, ids=lambda module: module.PROOF.id)
 def test_they_hold_and_find_what_they_state(proof):
     steps = list(proof.PROOF.steps())
@@ -64,6 +65,7 @@ SLIPS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("slip", SLIPS)
 def test_a_slip_fails(slip, monkeypatch):
     module, name, wrong = SLIPS[slip]

@@ -20,6 +20,7 @@ def run(request):
     return fl.simulate(law, Q, None if isinstance(law, fl.VelocityLaw) else P, (0.0, 0.3))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scaling", [(1e-6, 1.0), (1e3, 1e-3), (25.4, 60.0)])
 def test_what_is_said_of_a_law_is_said_in_all_units(run, scaling):
     for name in theorems_about(run.law, Q, P):

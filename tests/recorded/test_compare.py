@@ -226,6 +226,7 @@ def test_positions_that_move_otherwise_than_velocities_are_said_first(factor):
     assert fl.compare(recording_of(right), law).findings == ()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("at", "factor", "text"),
     [
@@ -244,6 +245,7 @@ def test_one_agent_axis_or_stretch_whose_velocities_are_wrong_is_named(at, facto
     assert re.match(f"positions {text.split(' move')[0]} move by", noisy.findings[0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sd", [1e-3, 1e-2, 0.1, 1.0])
 def test_no_agent_axis_or_stretch_is_named_by_chance(sd):
     (q, p), rng = own_run(T), np.random.default_rng(1)
@@ -298,6 +300,7 @@ def test_a_maps_noise_is_left_out_and_its_own_discretisation_is_no_law_stepped()
     assert "another law acts" in fl.compare(recording_of(run), fl.Algorithm1()).findings[-1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["steps", "splines", "bound"])
 @pytest.mark.parametrize("seed", range(3))
 def test_stated_noise_alone_is_no_finding_and_gains_hold_the_truth(kind, seed):

@@ -13,6 +13,7 @@ FINDINGS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", list(CODES))
 def test_the_error_is_the_only_finding(name):
     seen = fl.compare(faulty_recording(name), intended_law())

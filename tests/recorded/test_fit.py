@@ -43,6 +43,7 @@ def test_gains_of_an_exact_recording_are_found_from_sample_to_sample():
     assert fl.fit(rec, guess, free=("alpha.d",)).values["alpha.d"] == pytest.approx(7.0, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_gains_of_noisy_positions_lie_within_a_few_standard_errors():
     law, _, rec = made(7, 2.0, 0.07, 1)
     found = fl.fit(rec, replace(law, gains=fl.Gains()))
@@ -76,6 +77,7 @@ def pulled(c1=2.0, c2=0.6):
     return fl.Algorithm2(gains=fl.Gains(0.0, 0.0, c1_gamma=c1, c2_gamma=c2), target=fl.StaticTarget((0.0,)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stated", [0.04, 0.01, None])
 def test_standard_errors_are_those_of_least_squares_by_the_closed_form(stated):
     """A noise of 0.02 that is stated too small, or not at all, is taken from the residuals; gaps weigh nothing."""
@@ -112,6 +114,7 @@ def test_slopes_are_carried_by_three_terms_of_the_exponential():
     np.testing.assert_allclose(propagate(np.eye(3)[:2], 0.2), series[:2], rtol=1e-14)
 
 
+@pytest.mark.slow
 def test_slopes_are_differences_of_solutions_to_the_second_power_of_a_block():
     law, start, t = fl.Algorithm1(), np.array([0.0, 6.0, 1.0, -1.0]), np.arange(65) * 0.005
     free = FreeParameters.of(law, ("c1_alpha", "c2_alpha"))
@@ -225,6 +228,7 @@ def test_a_gain_pressed_to_nothing_has_an_end_above():
     assert found.unidentifiable == ()
 
 
+@pytest.mark.slow
 def test_velocities_with_errors_do_not_shrink_gains():
     """Even errors in a bound of positions and velocities, on which a regression gives gains that are too small."""
     rng, b, inside = np.random.default_rng(3), 0.05, 0

@@ -117,6 +117,7 @@ def bounded_motion(rng, most):
     return np.vstack([np.zeros((1, 2)), np.cumsum(0.05 * p[:-1] + 0.5 * 0.05**2 * u, axis=0)]), p
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("velocities", ["none", "recorded", "smoothed"])
 def test_a_filled_gap_holds_every_motion_of_bounded_acceleration(velocities):
     """No bound holds of smoothed velocities, on which the positions in the gap must not rest."""
@@ -149,6 +150,7 @@ def test_the_error_in_a_gap_is_that_of_the_worst_motion():
     assert fl.Recording(t, q, bound=0.0).filled(most_acceleration=2.0, longest=3.0).gaps == 3
 
 
+@pytest.mark.slow
 def test_exact_samples_around_a_filled_gap_are_smoothed_without_overflow():
     """Deviations from 1e-7 to 1 of the flock's size: without jerk covariances would be rounding, which grows."""
     t, rng = np.linspace(0.0, 3.0, 151), np.random.default_rng(3)

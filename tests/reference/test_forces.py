@@ -62,6 +62,7 @@ def test_every_law_with_an_energy_is_here():
     assert having == set(NAMES)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("name", NAMES)
 def test_forces_are_complex_steps_of_the_energy(name, seed):

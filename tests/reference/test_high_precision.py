@@ -72,6 +72,7 @@ def test_the_reference_is_known_to_twenty_five_digits():
         assert max(abs(a - b) for a, b in zip(solution(8), solution(12), strict=True)) < mp.mpf("1e-25")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["DOP853", "scipy-DOP853", "RK45", "scipy-RK45", "LSODA"])
 @pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-12])
 def test_every_method_comes_to_it(method, rtol):

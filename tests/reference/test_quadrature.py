@@ -36,6 +36,7 @@ def _points(*specials, top):
     return sorted({float(x) for x in (0.0, *specials, *beside, *near, *fractions) if x >= 0.0})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("par", PARAMETERS)
 def test_psi_alpha_to_thirteen_digits_of_c_star(par):
     alpha = AlphaInteraction(*par)

@@ -144,6 +144,7 @@ def test_the_coverage_is_in_reports_on_the_whole_catalogue_and_links_what_they_s
 WHOLE = '{"complete": true, "of": null}'
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("verdicts", [WHOLE, WHOLE[:-1], "", "[]", '{"complete": 1}', "[" * 100_000, None])
 def test_a_whole_report_stays_even_if_its_verdicts_are_damaged(tmp_path, monkeypatch, verdicts):
     monkeypatch.chdir(tmp_path)

@@ -20,6 +20,7 @@ def section():
     return gather(asked, check_all(asked))
 
 
+@pytest.mark.slow
 def test_a_row_counts_what_each_run_says_by_itself(section):
     (entry,) = section.entries
     row, directions = entry.rows

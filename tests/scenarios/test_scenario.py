@@ -113,6 +113,7 @@ def test_the_push_is_an_option_of_the_notebook_alone():
         scenario("paper-flocking", n=3)
 
 
+@pytest.mark.slow
 def test_the_push_holds_a_squeezed_pair_apart():
     """Seed 0: agents 20 and 21 all but coincide without the push, and slide along its edge at 0.05 with it."""
     plain, pushed = (scenario("notebook-algorithm1", push=push) for push in (False, True))

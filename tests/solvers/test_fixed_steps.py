@@ -24,6 +24,7 @@ class Plain(fl.Algorithm2):
         return super().flow(t, q, p)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", [LAW, Plain(target=MOVING)], ids=["compiled", "in Python"])
 @pytest.mark.parametrize("kind", KINDS)
 @settings(max_examples=5, deadline=None)

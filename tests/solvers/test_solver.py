@@ -65,6 +65,7 @@ def test_an_adaptive_pair_integrates_a_law(law):
     assert (fl.verify("energy", fl.simulate(law, Q, P, (0.0, 1.0), method=Tsit5())).status == "verified") is known
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", [LAW, Plain(target=LAW.target)], ids=["compiled", "in Python"])
 @pytest.mark.parametrize("kind", [Ralston, fl.Heun, fl.RK4, fl.ExplicitEuler, fl.SemiImplicitEuler, fl.TaylorStep])
 def test_errors_of_fixed_steps_fall_by_the_order(law, kind):

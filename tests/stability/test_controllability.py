@@ -40,6 +40,7 @@ def kalman_rank(net, agents, position=1, velocity=2):
     return sp.Matrix.hstack(*powers).rank()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("net", [ROW, RING, CHAIN, STAR, MESH], ids=["row", "ring", "chain", "star", "mesh"])
 def test_ranks_are_those_of_kalmans_matrix(net):
     """Jordan blocks too: followers in a chain share their poles."""

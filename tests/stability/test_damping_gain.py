@@ -15,6 +15,7 @@ PAIR = [[0.0, 0.0], [7.0, 0.0]]
 HEXAGON = hexagonal_spiral(7, 7.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ratio", [0.05, 0.3, 0.95])
 def test_a_bond_is_damped_by_twice_the_consensus_gain(ratio):
     """A stretched bond has s² + 2 c2α a s + 2 k: with ζ at c2α = ζ √(2 k)/a, k and a read off K and D."""
@@ -27,6 +28,7 @@ def test_a_bond_is_damped_by_twice_the_consensus_gain(ratio):
     assert damped.law.gains.c2_alpha == damped.gain
 
 
+@pytest.mark.slow
 def test_the_centre_and_any_mode_by_its_name():
     law = Algorithm2(target=StaticTarget((0.0, 0.0)), gains=Gains(c1_gamma=9.0, c2_gamma=0.5))
     centre = gain_for_damping(law, HEXAGON, "c2_gamma", 0.7, mode="translation x")

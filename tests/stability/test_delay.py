@@ -219,6 +219,7 @@ def grown(system, q, share, law, delayed="all"):
     return np.polyfit(centres, tops, 1)[0], root.real
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("delayed", "share"), [("all", 0.85), ("all", 1.15), ("pairs", 0.85), ("pairs", 1.15), ("neighbours", 1.15)]
 )

@@ -171,6 +171,7 @@ def test_overshoot_is_that_of_the_damping_ratio():
     assert found.met
 
 
+@pytest.mark.slow
 def test_a_flock_does_what_is_said_of_it():
     pair = gain_problem([[0.0, 0.0], [7.0, 0.0]], alpha=ALPHA, gains=GAINS)
     found = design_gains(pair, Specifications(delay=0.01, h2=1.0), bounds=(0.5, 4.0))
@@ -181,6 +182,7 @@ def test_a_flock_does_what_is_said_of_it():
     assert found.binding == min(found.room, key=found.room.get)
 
 
+@pytest.mark.slow
 def test_the_least_effort_that_decays_fast_enough():
     """Of s² + c2 s + c1 white noise asks for (c1 + c2²)/(2 c2) in power; with a rate of 1 that is least at (1, 2)."""
     least = design_gains(ONE, Specifications(decay=1.0), bounds=(0.2, 20.0), least="effort")

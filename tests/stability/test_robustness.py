@@ -86,6 +86,7 @@ def a_net(seed, n=4):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_one_way_nets_lose_stability_at_the_gains_that_are_said(seed):
     flock = a_net(seed)
@@ -128,6 +129,7 @@ def test_the_bracket_that_was_searched_is_no_infinity():
         assert loop_margins(flock).gain == loop_margins(flock).searched == expected
 
 
+@pytest.mark.slow
 def test_phase_margins_are_what_a_lag_at_the_crossover_takes():
     found = robustness_margins(LAW, REST).weakest
     loop = open_loop(linearise(LAW, REST), found.agent, found.axis)

@@ -59,6 +59,7 @@ def by_differences(law, q, delays):
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "law",
     [
@@ -125,6 +126,7 @@ def test_a_directed_net_is_linearised_by_its_own_ranges():
     assert linearise(law, pair).stable
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("late", ["all", "pairs", "neighbours"])
 def test_a_delayed_flock_decays_as_its_rightmost_root(late):
     """Two agents on a line, their distance pushed: ln of the swing over time falls as the rightmost root says."""
@@ -202,6 +204,7 @@ test_bad_input = refused(
 NET = NetConsensus([[0, 1, 0, 0], [0, 0, 1, 0], [0.5, 0, 0, 1], [1, 0, 0, 0]], velocity=2.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("late", ["pairs", "neighbours"])
 def test_a_delay_margin_of_a_net_is_met_by_its_runs(late):
     """3 % below the margin the delayed net comes together, 3 % above it swings apart, at the margin's frequency."""

@@ -61,6 +61,7 @@ def test_modes_of_a_tree_with_a_cycle_solve_the_quadratic_problem():
     assert len(problem.modes) == (2 * n - 2) - sum(mode.frequency > 0.0 for mode in problem.modes)
 
 
+@pytest.mark.slow
 def test_shapes_of_equal_followers_are_that_of_the_last():
     """A defective pole has one shape; 60 equal answers in a row grow beyond all numbers."""
     for n in (4, 60):
@@ -71,6 +72,7 @@ def test_shapes_of_equal_followers_are_that_of_the_last():
             assert abs(mode.shape[-1, 0]) == pytest.approx(1.0, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_a_stiff_chain_without_a_zero_mode_has_none():
     """K = 1 on the diagonal and −2 beside it has the singular value 2^-60, and no eigenvalue but 1."""
     n = 60

@@ -24,6 +24,7 @@ def test_identities_hold_for_generic_n(m: int) -> None:
         assert identity.rate.has(sums_over_pairs.N)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", ["algorithm1", "algorithm2"])
 @pytest.mark.parametrize(("n", "m"), [(1, 2), (2, 1), (2, 3), (3, 2), (4, 1), (5, 1)])
 def test_lifting_agrees_with_the_flock_written_out(law: str, n: int, m: int) -> None:

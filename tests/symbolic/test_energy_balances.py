@@ -8,6 +8,7 @@ from flockana import CircleTarget, Copies, Gains, PeerToPeer, Spring, StaticTarg
 from flockana.symbolic import energy_balances as symbolic
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [1, 2, 3])
 def test_identities_hold_in_every_dimension(m):
     assert all(symbolic.given_frame_identity(m, informed=k).holds for k in range(4))

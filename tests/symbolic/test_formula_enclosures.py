@@ -21,6 +21,7 @@ def exactly(text):
     return sp.nsimplify(sp.sympify(text, locals={"s": S}), rational=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", FORMULAS)
 def test_values_and_derivatives_lie_in_their_enclosures(text):
     """On 60 random intervals, at both ends and inside, up to the third Taylor coefficient."""

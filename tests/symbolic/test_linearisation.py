@@ -33,6 +33,7 @@ def test_every_block_of_the_gamma_agent_is_the_derivative_of_its_pull(m, bounded
     assert len(found.residuals) == 4 * m * m
 
 
+@pytest.mark.slow
 @DIMENSIONS
 @pytest.mark.parametrize("kind", ["wall", "sphere"])
 def test_every_block_of_an_obstacle_is_the_derivative_of_its_force(kind, m):
@@ -90,6 +91,7 @@ def test_the_agents_block_is_what_the_kernels_compute(bounded):
     np.testing.assert_allclose(law.jacobian(0.0, q, 0.0 * q)[3:], expected, rtol=1e-14, atol=1e-15)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["wall", "sphere"])
 @pytest.mark.parametrize("clearance", [1.0, 4.0])
 def test_the_obstacles_block_is_what_the_kernels_compute(kind, clearance):

@@ -38,6 +38,7 @@ def test_one_obstacle_leaves_its_braking_and_nothing_else(kind: str, m: int) -> 
     assert GenericObstacle(kind, m).energy_residual() == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("moving", [False, True])
 @DIMENSIONS
 def test_theorem_6_holds_for_generic_n_and_any_obstacles(m: int, moving: bool) -> None:

@@ -85,6 +85,7 @@ def test_hidden_jumps_poles_and_kinks_are_found_with_a_witness(text, fault, at):
     assert at is None or low == pytest.approx(at, abs=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text", ["sin(s - 1.3)/(s - 1.3)", "exp(-1/(s - 1.3)**2)", "((s - 1.3)**2)**(3/4)*(s - 1.3)**2", "exp(1/(s - r))"]
 )
@@ -118,6 +119,7 @@ SIGNS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("adjacency", "weight", "inside"), SIGNS, ids=[text for text, _, _ in SIGNS])
 def test_the_sign_of_an_adjacency(adjacency, weight, inside):
     facts = pair("s**2" + END, adjacency).facts

@@ -19,6 +19,7 @@ LAWS = ["algorithm1", "algorithm2"]
 SIZES = [(1, 1), (1, 3), (2, 1), (2, 2), (2, 3), (3, 1), (3, 2), (3, 3), (4, 2)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize(("n", "m"), SIZES)
 def test_the_chain_rule_gives_the_closed_form(law: str, n: int, m: int) -> None:
@@ -31,6 +32,7 @@ def reference(law: str, n: int, m: int, alpha: AlphaSymbols) -> NumericLaw:
     return numeric_law(law, n, m, alpha=alpha, gains=GAINS, q_r=[2.0] * m, p_r=[0.25] * m)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize(("n", "m", "alpha"), [(2, 1, PAPER), (3, 2, PAPER), (3, 3, UNEVEN), (4, 2, UNEVEN)])
 def test_reference_values_are_those_of_the_kernels(law, n, m, alpha):

@@ -19,6 +19,7 @@ def rows(table):
     return {(row.theorem, row.claim): row for row in table.itertuples()}
 
 
+@pytest.mark.slow
 def test_statuses_are_those_of_verify_wherever_law_and_start_decide():
     """Of the short runs of the catalogue, whose verdicts are kept, nearly half of the claims are known beforehand."""
     decided = claims = 0

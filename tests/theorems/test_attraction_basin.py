@@ -123,6 +123,7 @@ def test_a_flock_too_large_for_a_dense_hessian_is_left_open(monkeypatch):
     assert margin(LAW1, hexagonal_patch(1, 7.0)) == -1.0
 
 
+@pytest.mark.slow
 @given(seeds, st.floats(-6.0, 6.0).map(lambda x: 10.0**x), st.floats(-6.0, 6.0).map(lambda x: 10.0**x))
 def test_units_places_turns_and_names_change_nothing(seed, length, time):
     q, p = shaken(seed, size=1e-3, speed=0.05)

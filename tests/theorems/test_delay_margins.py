@@ -48,6 +48,7 @@ def test_roots_a_fiftieth_to_either_side(verdict_of):
         assert f"stable up to τ* = {claim.computed['delay']:.5g}" in claim.detail
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.9, 1.1])
 def test_a_sweep_that_is_off_by_a_tenth_is_refuted(monkeypatch, share):
     """The pair by a tenth less the 1e-9 allowed, the hexagons by the root on the wrong side, whose error it is."""

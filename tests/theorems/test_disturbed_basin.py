@@ -12,6 +12,7 @@ def verdict(law, **how):
     return verify("disturbed-basin", simulate(law, PAIR, 0.0 * PAIR, (0.0, 10.0), **how))
 
 
+@pytest.mark.slow
 def test_a_light_wind_is_borne():
     found = verdict(Disturbed(Algorithm1(), swing=[[0.1], [-0.1]], frequency=0.7))
     assert (found.status, found.rigour) == ("verified", "symbolic")
@@ -31,12 +32,14 @@ def test_it_is_the_same_in_other_units_and_its_numbers_are_the_units_own():
         assert other.margin == pytest.approx(1000.0 * one.margin, rel=2e-3)
 
 
+@pytest.mark.slow
 def test_a_wind_on_all_alike_moves_no_shape():
     found = verdict(Disturbed(Algorithm1(), force=(100.0,)))
     assert found.status == "verified"
     assert found.claim("ultimate").computed < 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("law", "how", "reason"),
     [

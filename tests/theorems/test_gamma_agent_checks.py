@@ -109,6 +109,7 @@ def test_a_motion_that_vanishes_at_every_sample_is_seen_and_samples_too_sparse_l
     assert slip(run(MOVING[0], [1.0]), lambda t: np.zeros(2))[1] == np.inf
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("options", [{}, {"method": "RK4", "dt": 0.05}], ids=["adaptive", "fixed steps"])
 @pytest.mark.parametrize("instants", [[0.0, 1.0, 2.0, 3.0], None], ids=["sparse", "default"])
 def test_a_jump_between_samples_is_seen_at_the_solver_s_steps(instants, options):

@@ -27,6 +27,7 @@ def verdict(own):
     return fl.verify("os-3", fl.Recording(T, *own, bound=1e-6, source="own code"), law=LAW)
 
 
+@pytest.mark.slow
 def test_a_users_own_run_by_scipy_is_decided_as_our_run_is(own, verdict):
     run = fl.verify("os-3", fl.simulate(LAW, Q0, P0, (0.0, 6.0), t_eval=T))
     assert {c.name: c.status for c in verdict.claims} == {c.name: c.status for c in run.claims}
@@ -45,6 +46,7 @@ def unmet(rec, law=LAW, theorem="os-3"):
     return found.hypotheses[0].detail
 
 
+@pytest.mark.slow
 def test_another_form_a_changed_sample_and_a_random_walk_are_unmet_with_the_place(own):
     other = own_run(T, pull_per_axis=True)
     assert "is off by" in unmet(fl.Recording(T, *other, bound=1e-6))
@@ -57,6 +59,7 @@ def test_another_form_a_changed_sample_and_a_random_walk_are_unmet_with_the_plac
     assert "is off by" in unmet(fl.Recording(T, *own, bound=1e-6), fl.Algorithm1(), "os-1")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("accuracy", [{}, {"bound": 1e-6, "estimated": True}])
 def test_an_accuracy_that_is_not_stated_decides_nothing(own, accuracy):
     found = fl.verify("os-3", fl.Recording(T, *own, **accuracy), law=LAW)
@@ -64,6 +67,7 @@ def test_an_accuracy_that_is_not_stated_decides_nothing(own, accuracy):
     assert not {"verified", "refuted"} & {c.status for c in found.claims}
 
 
+@pytest.mark.slow
 def test_a_wide_bound_is_met_and_decides_what_has_room(own):
     rec = fl.Recording(T, own[0] + 0.2, own[1], bound=0.3, p_bound=0.3)
     found = fl.verify("os-3", rec, law=LAW)
@@ -103,6 +107,7 @@ def test_a_start_that_splines_do_not_tell_is_found_from_the_first_samples(monkey
     assert following(fl.Recording(t, run.q + noise, sd=1e-4), law).status == "met"
 
 
+@pytest.mark.slow
 def test_enclosures_hold_every_flock_that_the_accuracy_allows(own):
     from flockana.recorded.follows_law import following
     from flockana.theorems.recording_verdicts import observed_recording
@@ -141,6 +146,7 @@ def test_schemes_are_laws_of_recordings_too():
     assert "is off by" in unmet(rec, LAW)
 
 
+@pytest.mark.slow
 def test_without_a_theorem_all_that_apply_are_judged(own, verdict):
     rec = fl.Recording(T, *own, bound=1e-6, source="own code")
     found = {one.theorem: one for one in fl.verify(None, rec, law=LAW)}
@@ -199,6 +205,7 @@ def test_the_energy_of_a_start_is_enclosed_over_the_balls_of_its_samples():
     assert energy_within_accuracy(Observed.of(run), 0) == 0.0
 
 
+@pytest.mark.slow
 def test_of_a_last_state_that_is_not_known_no_equilibrium_is_near(own):
     """It was that of the law's own solution, however wide the stated bound."""
     for bound, status in ((1e-6, "met"), (1e30, "assumed")):

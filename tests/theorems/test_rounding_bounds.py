@@ -46,6 +46,7 @@ def test_the_force_of_a_pair_is_as_exact_as_is_said_and_not_much_better(pair):
     assert max(off) >= 1e-3 * pair_force_error(pair)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("pair", PAIRS)
 def test_the_energy_of_a_flock_is_as_exact_as_is_said(pair):
     rng, law = np.random.default_rng(0), Algorithm1(pair)

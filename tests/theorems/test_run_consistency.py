@@ -58,6 +58,7 @@ def test_samples_of_another_law_are_refused(edit, how: dict) -> None:
         ensure_fits(edit(run))
 
 
+@pytest.mark.slow
 def test_a_law_that_is_another_function_each_time_is_refused_as_simulated() -> None:
     with pytest.raises(ArgumentError, match="was it edited, or is it of another law"):
         verify("energy", fl.simulate(Gusty(), *PAIR, (0.0, 0.05)))

@@ -40,6 +40,7 @@ def test_a_spike_that_tighter_tolerances_alone_leap_over_too_is_noticed(how):
     assert demand_of(alone, 0.0).missed.size
 
 
+@pytest.mark.slow
 def test_a_spike_too_narrow_for_any_number_of_steps_is_assumed_not_to_be_there():
     run = meeting(barrier=1.5, width=1e9)
     verdict = fl.verify("energy", run)

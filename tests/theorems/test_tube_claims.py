@@ -50,6 +50,7 @@ def test_all_of_theorem_3_is_decided_and_its_rigour_reads_interval(pair):
     assert verdict.claim("iv-none").margin < 7.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("basin", "reason"),
     [
@@ -108,6 +109,7 @@ def test_agents_that_change_places_on_a_line_met():
     assert statuses(verify("collision-energy", beside))["twice"] == "inconclusive"
 
 
+@pytest.mark.slow
 def test_theorem_1_from_a_tube():
     law = Algorithm1()
     tube = enclose(law, NEAR, 0.0 * NEAR, (0.0, 0.125))

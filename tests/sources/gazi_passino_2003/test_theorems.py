@@ -25,6 +25,7 @@ def test_all_at_one_place_stay_there():
     assert verdict.claim("centroid").status == "verified"
 
 
+@pytest.mark.slow
 def test_the_rate_is_attained_by_attraction_alone():
     """Far from each other agents come in at exactly aM."""
     law = fl.GaziPassino(0.5, 1e-9, 1e-4)

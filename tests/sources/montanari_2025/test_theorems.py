@@ -72,6 +72,7 @@ def test_which_flocks_are_asked_about(monkeypatch):
         assert claim.computed["n"] == n
 
 
+@pytest.mark.slow
 def test_what_the_search_finds(verdict_of):
     """The rate of a double root at −√5, of alike gains within 5, with the rotation apart: that no gains better."""
     verdict = verdict_of("heterogeneous-gains")

@@ -59,6 +59,7 @@ def test_braking_meets_the_condition_wherever_h_is_not_negative():
     assert max(asked) <= 1.4  # 2α
 
 
+@pytest.mark.slow
 def test_both_sides_of_the_threshold():
     """On a line with r - D = 1 and c = 2 the speed √(2c) = 2 is the threshold."""
     for speed, known, end in ((1.999, ["verified", "vacuous"], 2.0), (2.001, ["vacuous", "verified"], 0.3)):

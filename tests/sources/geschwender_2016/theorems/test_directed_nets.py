@@ -22,6 +22,7 @@ def claims():
     return {claim.name: claim for claim in directed_nets.theorem.examine(Tolerances())[1]}
 
 
+@pytest.mark.slow
 def test_one_range_for_all_gives_the_laws(claims):
     claim = claims["undirected"]
     assert 0.0 <= claim.computed < 1e-14
@@ -53,6 +54,7 @@ def test_who_is_drawn_is_not_answered(claims):
     assert f"Σ u_i = {pull:.4g}" in claim.detail
 
 
+@pytest.mark.slow
 def test_the_energy_rises_by_that_of_who_follows(claims, run):
     claim = claims["energy-rises"]
     h = [LAW.energy(0.0, q, p) for q, p in zip(run.q, run.p, strict=True)]

@@ -20,6 +20,7 @@ def e3(verdict_of):
     return verdict_of("E3")
 
 
+@pytest.mark.slow
 def test_e3_the_double_agent_is_a_minimum_by_differences_of_the_force_alone(e3):
     law, q = Algorithm1(), rhombus_with_double_agent(7.0)
     assert np.abs(law.acceleration(0.0, q, 0 * q)).max() < 1e-12

@@ -14,6 +14,7 @@ from flockana.sources.geschwender_2016.theorems import e04_collision_barrier as 
 ALPHA = AlphaInteraction()
 
 
+@pytest.mark.slow
 def test_the_figures_of_the_erratum(verdict_of):
     verdict = verdict_of("E4")
     assert verdict.status == "verified"

@@ -17,6 +17,7 @@ from flockana.symbolic.translational_dynamics import OMEGA, SQUARE, falling_cond
 TRUE = [1.01, 1.04, 1.11, 1.15, 0.92]
 
 
+@pytest.mark.slow
 def test_ratios_over_the_speed():
     verdict = verify("E15")
     assert verdict.claim("first-grows").computed == pytest.approx(TRUE, abs=6e-3)

@@ -17,6 +17,7 @@ def pull(law, n, radius):
     return float(weight @ x[:, 0]) - radius
 
 
+@pytest.mark.slow
 def test_at_equal_coefficients_no_small_flock_is_a_lattice(verdict_of):
     necessary = verdict_of("E16").claim("necessary")
     assert (necessary.status, necessary.by) == ("verified", "source")

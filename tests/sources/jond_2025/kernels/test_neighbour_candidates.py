@@ -65,6 +65,7 @@ def test_neighbours_at_exactly_the_radius_count():
     assert fragments(q, radii[2] * (1.0 - 1e-12)).tolist() == [[400, 1]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [1, 2, 3])
 @pytest.mark.parametrize("order", ["synchronous", "sequential"])
 @pytest.mark.parametrize("form", ["position", "bearing"])

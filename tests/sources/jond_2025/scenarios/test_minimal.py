@@ -7,6 +7,7 @@ from flockana import DiscreteMinimalFlocking, MinimalFlocking, scenario
 from flockana.measures.perception import both_ways, out_tree_root
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["zone-tree", "zone-path"])
 @pytest.mark.parametrize("seed", [1, 7, 11])
 def test_trees_hold_from_other_starts_too(name, seed):

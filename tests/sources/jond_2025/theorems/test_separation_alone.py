@@ -26,6 +26,7 @@ def seen():
     return {claim.name: claim for claim in claims}, [one.run for one, _ in runs]
 
 
+@pytest.mark.slow
 def test_a_pair_swings_about_its_spacing_with_the_frequency_of_two_mu(seen):
     claim, run = seen[0]["alone"], seen[1][0]
     period = 2.0 * pi / sqrt(6.0)
@@ -43,6 +44,7 @@ def test_a_pair_swings_about_its_spacing_with_the_frequency_of_two_mu(seen):
     assert claim.error < 1e-8
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.9, 1.0 - 1e-6])
 def test_a_pair_that_swings_otherwise_is_told(monkeypatch, share):
     """Planted: the frequency of so much μ. After 20 periods nothing agrees, or all but 1e-4 of a period does."""

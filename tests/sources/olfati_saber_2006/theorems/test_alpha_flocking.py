@@ -118,6 +118,7 @@ class TestBetweenSamples:
         assert found.claim("flock").status == "inconclusive"
         assert found.claim("deviation").status == "inconclusive"
 
+    @pytest.mark.slow
     @given(st.integers(0, 2**32 - 1), st.integers(2, 7), st.integers(1, 3))
     def test_bounds_hold_of_a_dense_run(self, seed, n, m):
         rng = np.random.default_rng(seed)

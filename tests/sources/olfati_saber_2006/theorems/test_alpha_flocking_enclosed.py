@@ -42,6 +42,7 @@ def test_what_is_largest_over_the_window_is_what_a_run_has_there(tube, claim, me
     assert said.margin <= bound - found / 1.1
 
 
+@pytest.mark.slow
 def test_the_radius_is_compared_with_what_it_is_when_the_window_begins(tube):
     tolerances = Tolerances(settle=0.5, cohesion=1.5)
     run = window(tube, tolerances)
@@ -54,6 +55,7 @@ def test_the_radius_is_compared_with_what_it_is_when_the_window_begins(tube):
     assert verify("alpha-flocking", tube, tolerances=tight).claim("cohesive").status != "verified"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("far", "flock", "outside"),
     [

@@ -122,6 +122,7 @@ def test_more_crossings_than_are_listed_are_said_to_be_at_least_so_many(monkeypa
     assert "at least 100 pairs of 780 links cross" in verdict.claim("extension-quantitative").detail
 
 
+@pytest.mark.slow
 @given(st.integers(0, 2**32 - 1), st.sampled_from([1, 2, 3]))
 def test_the_quantitative_form_is_decided_as_by_fractions(seed, m):
     """Every pair of links that cross, of nets on a grid where ℓ = √2 times the least distance happens often."""

@@ -25,6 +25,7 @@ def static():
     return _run(StaticTarget((30.0, 0.0)))
 
 
+@pytest.mark.slow
 def test_a_static_gamma_agent_verifies(static):
     verdict = verify("os-6", static)
     assert verdict.status == "verified"
@@ -90,6 +91,7 @@ def test_a_condition_that_rounding_decides_is_assumed():
     assert judged("os-6", run).claim("rate").status != "refuted"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "target",
     [LinearTarget((20.0, 0.0), (3.0, 0.0)), RescaledVelocity(LinearTarget((20.0, 0.0), (3.0, 0.0)), 0.0)],

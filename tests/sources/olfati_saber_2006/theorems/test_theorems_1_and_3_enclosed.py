@@ -20,6 +20,7 @@ def tube_of(*places, speed=0.0, law=LAW, span=SPAN):
     return enclose(law, q, p, span)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speed", [0.0, 39.0, 40.0, 56.0, 57.0])
 def test_the_energy_against_c_star_and_twice_it(speed):
     verdict = verify("collision-energy", tube_of(0.0, 7.0, speed=speed))
@@ -30,6 +31,7 @@ def test_the_energy_against_c_star_and_twice_it(speed):
         assert (verdict.claim(claim).status == "vacuous") == (found.status == "unmet")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speed", [0.0, 39.0, 40.0])
 @pytest.mark.parametrize("name", ["os-1", "os-3"])
 def test_two_coincide_with_c_star_exactly(name, speed):
@@ -95,6 +97,7 @@ def test_how_far_the_energy_lets_agents_go(gain):
     assert claim.stated == f"R <= sqrt(2 H_λ(0)/c1γ) = {sqrt(2.0) * 3.5:.5g}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("speed", "least"), [(39.0, 0), (40.0, 1), (56.0, 1), (57.0, 2)])
 def test_more_pairs_than_the_energy_pays_for(speed, least):
     """Of two there is one pair: (iv) as printed says something while H(0) < c*."""
@@ -103,6 +106,7 @@ def test_more_pairs_than_the_energy_pays_for(speed, least):
     assert (verdict.claim("iv-printed").status == "vacuous") == (least >= 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("speed", "said"), [(0.0, "met"), (4.6, "met"), (4.8, "unmet")])
 def test_two_that_cannot_part_stay_together(speed, said):
     """H = v² against c1α ψ_α(r_α) = 22.08, which two agents far apart have too."""

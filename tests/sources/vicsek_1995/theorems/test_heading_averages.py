@@ -21,6 +21,7 @@ def flock(seed, size, low, high, n=8):
     return rng.uniform(0.0, size, (n, 2)), rng.uniform(low, high, n)
 
 
+@pytest.mark.slow
 def test_a_net_that_is_certified_stays_as_it_is():
     seen = 0
     for seed in range(30):
@@ -55,6 +56,7 @@ def test_a_net_that_averages_slowly_may_change_for_long():
         assert certain(heading_averages.permanently_connected(LAW, q, heading)) == (share < 1.0)
 
 
+@pytest.mark.slow
 def test_groups_that_are_certified_to_part_never_meet():
     seen = 0
     for seed in range(30):
