@@ -14,6 +14,7 @@ def test_a_scenario_is_written_and_what_is_missing_is_said(call, tmp_path):
     assert "N 500 RSQ" in (tmp_path / "new" / "pair.table").read_text()
 
 
+@pytest.mark.slow
 def test_the_nearest_consensus_can_be_chosen(call, tmp_path):
     code, said, _ = call("lammps", "hexagon", "-o", tmp_path, "--consensus", "nearest")
     assert code == 0

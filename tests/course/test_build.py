@@ -95,6 +95,7 @@ def test_every_lecture_asks_for_a_proof_for_parts_and_for_the_player():
     assert set(asked) == set(build.KINDS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: path.stem)
 def test_an_answer_takes_no_name_that_the_lecture_uses(source):
     """Run All, with answers still missing, must not break a later cell."""

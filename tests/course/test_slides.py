@@ -8,6 +8,7 @@ from flockana.course.slides import slides
 LECTURES = [path for path in build.sources() if not path.name.startswith("A")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("source", LECTURES, ids=lambda path: path.stem)
 def test_a_slide_for_each_figure_with_one_sentence_and_all_code(source):
     text = source.read_text(encoding="utf-8").partition("# ## Exercises")[0]

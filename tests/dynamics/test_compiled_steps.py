@@ -121,6 +121,7 @@ def test_the_compiled_form_is_the_law_to_rounding(m, law):
     assert work[-1] == pytest.approx(energy - law.hamiltonian(0.5, q0, p0), abs=1e-9 * abs(energy))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["DOP853", "RK45", "RK23"])
 def test_it_decides_as_step_by_step(method):
     law, times = Algorithm2(target=TARGETS[3]), [0.0, 0.11, 0.25, 1.0]

@@ -123,6 +123,7 @@ def test_the_jacobian_is_the_complex_step_derivative(name, m):
             assert np.abs(law.obstacle_field.braking_blocks(q, p)[0]).max() > 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "obstacle",
     [

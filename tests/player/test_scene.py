@@ -26,6 +26,7 @@ def test_the_states_are_the_run_s_to_float32():
     np.testing.assert_allclose(arrays[f"series_{names.index('effort')}"], effort, rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_obstacles_and_target():
     solids = Sphere((20.0, 0.0), 4.0), Wall((0.0, -9.0), (0.0, 2.0)), Capsule((30.0, 0.0), (35.0, 0.0), 1.0)
     law = Algorithm3(target=LinearTarget((1.0, 2.0), (3.0, 0.0)), obstacles=solids)

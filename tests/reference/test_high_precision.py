@@ -84,6 +84,7 @@ def test_every_method_comes_to_it(method, rtol):
     assert np.abs(run.energy_residual).max() < 10.0 * rtol * run.energy()[0]
 
 
+@pytest.mark.slow
 def test_fixed_steps_come_to_it_with_their_order():
     errors = []
     for dt in (0.01, 0.005):

@@ -37,6 +37,7 @@ def test_a_row_counts_what_each_run_says_by_itself(section):
     assert (entry.runs, entry.incomplete, entry.options) == (3, 0, "")
 
 
+@pytest.mark.slow
 def test_the_page_holds_every_row(section):
     text = page_environment().get_template(TEMPLATE).render(statistics=section)
     row = section.entries[0].rows[0]

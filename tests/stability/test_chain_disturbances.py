@@ -86,6 +86,7 @@ def test_chains_of_other_forms_are_measured_and_say_so():
     assert string_stability(chain_of(1.0, 1.0), (2, 3)).stable is False
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [1, 4, 8])
 def test_growth_before_decay_against_a_fine_grid(n):
     """A chain that amplifies threefold from each to the next."""

@@ -201,6 +201,7 @@ def test_together():
     assert isinstance(spring(), FormulaInteraction)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", [spring(), alpha_formula()], ids=["in s", "in the norm"])
 def test_slopes_are_bounded_on_parts_of_the_range(law):
     """Against differences: never below them, and within a factor of 3 of the largest."""

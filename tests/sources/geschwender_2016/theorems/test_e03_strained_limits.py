@@ -37,6 +37,7 @@ def test_e3_the_double_agent_is_a_minimum_by_differences_of_the_force_alone(e3):
     assert e3.claim("double-agent").computed == pytest.approx(eigenvalues[3] / eigenvalues[-1], rel=1e-5)
 
 
+@pytest.mark.slow
 def test_e3_the_share_falls_and_its_interval_excludes_one(e3):
     claim = e3.claim("share")
     assert claim.computed[10]["holds"] == claim.computed[10]["of"] == 20

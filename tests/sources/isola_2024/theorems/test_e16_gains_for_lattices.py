@@ -29,6 +29,7 @@ def test_at_equal_coefficients_no_small_flock_is_a_lattice(verdict_of):
     assert "a pair reaches 10% at c1γ/c1α = 0.318" in necessary.detail
 
 
+@pytest.mark.slow
 def test_the_coefficients_of_the_project_do_not_suffice(verdict_of):
     verdict = verdict_of("E16")
     law = scenario("msn-static").law

@@ -62,6 +62,7 @@ def energy(q, p):
     return 0.5 * float(((p - p.mean(axis=0)) ** 2).sum()) + 1.5 * float(((gaps - 2.0) ** 2).sum())
 
 
+@pytest.mark.slow
 def test_a_path_keeps_its_energy_until_it_is_aligned(seen):
     claim, (alone, aligned) = seen[0]["energy"], seen[1][1:3]
     assert [run.law.sigma for run in (alone, aligned)] == [0.0, 1.0]

@@ -35,6 +35,7 @@ def test_the_well_is_that_of_one_spring(m, speed):
     assert 0.0 < basin.barrier < 0.5 * stiff * (0.999 * kink / sqrt(2.0)) ** 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dt", [0.001, 0.01])
 def test_a_step_is_stable_below_the_inverse_of_stiffness_and_damping(dt):
     """Λ = 2F' of the spring, Γ = 2 k₂ of the pair."""
