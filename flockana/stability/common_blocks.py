@@ -37,12 +37,15 @@ def split_into_blocks(four: Four) -> list[Four]:
     from scipy.linalg import block_diag
 
     sizes = [max(float(np.abs(four[k + i]).max()) for i in (0, 2)) for k in (0, 1)] * 2  # K₀ = K − K₁ is 0 to rounding
-    tolerances = [ROUNDINGS * EPS * len(four[0]) * size for size in sizes]
+    rounding = ROUNDINGS * EPS * len(four[0])
+    tolerances = [rounding * size for size in sizes]
     bases = _bases([x / np.abs(x).max() for x, small in zip(four, tolerances, strict=True) if np.abs(x).max() > small])
     if len(bases) < 2:
         return [four]
     blocks: list[Four] = [tuple(basis.T @ x @ basis for x in four) for basis in bases]  # type: ignore[misc]
     rotation = np.column_stack(bases)
+    if rotation.shape != four[0].shape or np.abs(rotation.T @ rotation - np.eye(len(rotation))).max() > rounding:
+        return [four]
     for k, (x, tolerance) in enumerate(zip(four, tolerances, strict=True)):
         if np.abs(rotation.T @ x @ rotation - block_diag(*(block[k] for block in blocks))).max() > tolerance:
             return [four]
