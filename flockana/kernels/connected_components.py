@@ -12,7 +12,7 @@ from flockana.kernels.agent_sums import square_between
 
 
 @subroutine
-def _root(parent, i):
+def root_of(parent, i):
     """Return the root of agent i's component, and shorten the path to the root."""
     while parent[i] != i:
         parent[i] = parent[parent[i]]
@@ -20,15 +20,21 @@ def _root(parent, i):
     return i
 
 
+@subroutine
+def merge(parent, i, j):
+    """Merge the components of two agents."""
+    a, b = root_of(parent, i), root_of(parent, j)
+    if a < b:
+        parent[b] = a
+    else:
+        parent[a] = b
+
+
 @kernel
 def unite(parent, first, second):
     """Merge the components of both ends of every link; `parent` starts as 0 … n − 1."""
     for k in range(first.size):
-        a, b = _root(parent, first[k]), _root(parent, second[k])
-        if a < b:
-            parent[b] = a
-        else:
-            parent[a] = b
+        merge(parent, first[k], second[k])
 
 
 @kernel

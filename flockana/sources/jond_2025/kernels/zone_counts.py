@@ -1,10 +1,14 @@
 """Counts of agents in zones and of flock components, at each instant of a run."""
 
+from math import sqrt
+
 import numpy as np
 import numpy.typing as npt
 
-from flockana.kernels.connected_components import labelled, unite
-from flockana.kernels.neighbours import FloatArray, IndexArray, pair_list
+from flockana.jit import kernel
+from flockana.kernels.agent_sums import square_between
+from flockana.kernels.connected_components import labelled, merge, root_of, unite
+from flockana.kernels.neighbours import DENSE_MAX, FloatArray, IndexArray, pair_list
 
 _SLACK = 1.0 + 1e-12  # the search is strict, and the zones are closed
 
@@ -29,6 +33,9 @@ def populations(q: FloatArray, r: FloatArray, c: FloatArray, a: FloatArray) -> F
 def fragments(q: FloatArray, a: FloatArray) -> npt.NDArray[np.int64]:
     """Return (components, agents in the largest) over time, (T, 2), with links by the attraction zone."""
     counts = np.zeros((len(q), 2), np.int64)
+    if q.shape[1] <= DENSE_MAX:
+        _count_fragments(q, a, counts)
+        return counts
     for positions, count in zip(q, counts, strict=True):
         (i, j, d), parent = _pairs(positions, float(a.max())), np.arange(q.shape[1], dtype=np.int32)
         is_linked = d <= np.maximum(a[i], a[j])
@@ -36,3 +43,22 @@ def fragments(q: FloatArray, a: FloatArray) -> npt.NDArray[np.int64]:
         sizes = np.bincount(labelled(parent))
         count[:] = sizes.size, sizes.max()
     return counts
+
+
+@kernel
+def _count_fragments(q, a, out):
+    """Write (components, agents in the largest) at each instant of a small flock, looking at all its pairs."""
+    n = q.shape[1]
+    parent, sizes = np.empty(n, np.int32), np.empty(n, np.int64)
+    for k in range(q.shape[0]):
+        for i in range(n):
+            parent[i], sizes[i] = i, 0
+        for i in range(n):
+            for j in range(i):
+                if sqrt(square_between(q[k], j, i)) <= max(a[i], a[j]):
+                    merge(parent, i, j)
+        for i in range(n):
+            sizes[root_of(parent, i)] += 1
+        for i in range(n):
+            out[k, 0] += sizes[i] > 0
+            out[k, 1] = max(out[k, 1], sizes[i])

@@ -24,6 +24,7 @@ from flockana.theorems import energy_basins as basins
 from flockana.theorems.theorem_toolkit import EPS, Enclosure, FloatArray
 
 _PIECES = 8  # into which the lengths that a pair may take are divided: each is enclosed by itself
+_DEAD = 2  # which piece of the action the dead zone is, where all pairs at rest are
 _CLEAR = 0.999  # of the way to the nearest kink: so wide the widest window is
 _UNKNOWN = basins.Basin()
 
@@ -93,7 +94,7 @@ def _third(law: DeadZoneFlocking, lengths: FloatArray, slack: float) -> FloatArr
     # makes 3 e (1 - e²) <= 2/√3 at most. No pair leaves its piece of F within the slack.
     bounds, pair = np.zeros(lengths.shape), law.interaction
     zones = np.searchsorted([pair.d1 - pair.ramp, pair.d1, pair.d2, pair.d2 + pair.ramp], lengths)
-    for zone in np.unique(zones):
+    for zone in np.unique(zones[zones != _DEAD]):
         zone_pairs = np.flatnonzero(zones == zone)
         length_grid = lengths[zone_pairs] + slack * np.linspace(-1.0, 1.0, _PIECES + 1)[:, None]
         s = Enclosure.between(np.maximum(length_grid[:-1], 0.0), length_grid[1:])
@@ -107,10 +108,8 @@ def _third(law: DeadZoneFlocking, lengths: FloatArray, slack: float) -> FloatArr
 
 
 def _action(pair: DeadZoneInteraction, zone: int, s: Enclosure) -> tuple[Enclosure, Enclosure, Enclosure]:
-    """Return f, f' and f'' on one of five pieces: repulsion, its ramp, dead zone, ramp of attraction, attraction."""
-    if zone == 2:
-        return 0.0 * s, 0.0 * s, 0.0 * s
-    near = zone < 2
+    """Return f, f' and f'' on a piece beside the dead zone: repulsion, its ramp, ramp of attraction, attraction."""
+    near = zone < _DEAD
     way = s if near else pair.r_d - s
     squared_value = way.square()
     full = 2.0 * pair.k_r / squared_value + pair.k_delta

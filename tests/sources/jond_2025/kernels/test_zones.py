@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from flockana import Alien, Box, SimplePolygon, ZoneNoise, ZoneRadii, ZoneWeights, ZoneWorld, simulate
+from flockana.sources.jond_2025.kernels import zone_counts
 from flockana.sources.jond_2025.kernels.neighbour_candidates import sort_into_cells
 from flockana.sources.jond_2025.kernels.zone_counts import fragments, populations
 from flockana.sources.jond_2025.kernels.zones import saturation
@@ -180,6 +181,16 @@ def test_instants_are_counted_each_by_itself():
         np.testing.assert_array_equal(together[0][k], fragments(q[None], a)[0])
         np.testing.assert_array_equal(together[1][k], populations(q[None], a / 9.0, a / 3.0, a)[0])
     assert together[0][1].tolist() == [1, 100]
+
+
+@pytest.mark.parametrize("n", [1, 2, 9, 40])
+def test_small_flocks_are_counted_as_large_ones(n, monkeypatch):
+    rng = np.random.default_rng(n)
+    q, a = 1.5 * np.sqrt(n) * rng.normal(size=(50, n, 2)), rng.uniform(0.5, 2.5, n)
+    small = fragments(q, a)
+    monkeypatch.setattr(zone_counts, "DENSE_MAX", 0)
+    np.testing.assert_array_equal(small, fragments(q, a))
+    assert n == 1 or len(np.unique(small[:, 0])) > 1
 
 
 def test_one_who_sees_farther_links_both():
