@@ -42,10 +42,10 @@ class Crossing(NamedTuple):
 NO_CROSSING = Crossing(inf, nan, inf)
 
 
-def modal_crossing(four: Four, neutral: float) -> Crossing | None:
+def modal_crossing(four: Four, neutral: float, lowest_frequency: float = 0.0) -> Crossing | None:
     """Return the smallest delay at which a pole reaches the imaginary axis, mode by mode; None without common modes."""
     # |k₀ − ω² + jωd₀| = |k₁ + jωd₁|: a quadratic equation in ω² where they are symmetric, else of degree 4 in ω.
-    # Stiffness up to `neutral` is 0.
+    # Stiffness up to `neutral` is 0, and frequencies below the lowest are rounding of neutral motions.
     crossing = common_diagonals(four)
     if crossing is None:
         return None
@@ -60,7 +60,7 @@ def modal_crossing(four: Four, neutral: float) -> Crossing | None:
         else:
             prompt, late_coefficients = np.array([k0, 1j * d0, -1.0]), np.array([k1, 1j * d1, 0.0])  # by powers of ω
             frequencies = _moduli_meet(prompt, late_coefficients, max(abs(d0) + abs(d1), sqrt(abs(k0) + abs(k1))))
-        for omega in frequencies:
+        for omega in (omega for omega in frequencies if omega >= lowest_frequency):
             late_coefficient, prompt_coefficient = k1 + 1j * omega * d1, k0 - omega * omega + 1j * omega * d0
             delay = phase(-late_coefficient * prompt_coefficient.conjugate()) / omega
             best = min(best, Crossing(delay, omega, delay if crossing.real else (1.0 - CLOSE) * delay))

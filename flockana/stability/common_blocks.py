@@ -19,14 +19,21 @@ from flockana.stability.strong_components import IndexArray
 Four = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 
 ROUNDINGS = 64.0  # of N eps: what counts as 0 in an entry of a matrix whose modes or blocks are taken
+_PRECISE = 1e6  # times what counts as 0: parts of blocks that are smaller are not known well enough
 _COUPLED = 1e-7  # relative: what couples directions by less, but by more than rounding, keeps the matrices whole
 _LEFT = 0.1  # of a unit vector, beyond the blocks so far: enough to begin another with
 
 
-def split_into_blocks(four: Four) -> list[Four]:
+def split_into_blocks(four: Four, *, neutral: bool = True) -> list[Four]:
     """Return the blocks of K₀, D₀, K₁, D₁ in an orthonormal basis, equal ones once; the four themselves if whole.
 
-    Blocks are coupled by rounding at most (see `ROUNDINGS`), and what is 0 to rounding is 0.
+    Blocks are coupled by rounding at most (see `ROUNDINGS`). A part of a block that is 0 to rounding is 0; where one is
+    so small beside the whole that rounding would matter in it, the four stay whole.
+
+    Parameters
+    ----------
+    neutral : bool
+        Whether some motions are held by nothing, so that a block's stiffness may be 0.
 
     Examples
     --------
@@ -42,19 +49,26 @@ def split_into_blocks(four: Four) -> list[Four]:
     bases = _bases([x / np.abs(x).max() for x, small in zip(four, tolerances, strict=True) if np.abs(x).max() > small])
     if len(bases) < 2:
         return [four]
-    blocks: list[Four] = [tuple(basis.T @ x @ basis for x in four) for basis in bases]  # type: ignore[misc]
+    blocks: list[Any] = [tuple(basis.T @ x @ basis for x in four) for basis in bases]
     rotation = np.column_stack(bases)
-    if rotation.shape != four[0].shape or np.abs(rotation.T @ rotation - np.eye(len(rotation))).max() > rounding:
+    is_square = rotation.shape == four[0].shape
+    if not (is_square and np.abs(rotation.T @ rotation - np.eye(len(rotation))).max() <= rounding):
         return [four]
     for k, (x, tolerance) in enumerate(zip(four, tolerances, strict=True)):
+        magnitudes = np.array([np.abs(block[k]).max() for block in blocks])
+        if ((magnitudes > tolerance) & (magnitudes < _PRECISE * tolerance)).any():
+            return [four]
         if np.abs(rotation.T @ x @ rotation - block_diag(*(block[k] for block in blocks))).max() > tolerance:
             return [four]
-    return [_without_rounding(kind, tolerances) for kind in _different(blocks, tolerances)]
+    blocks = [_without_rounding(block, tolerances) for block in blocks]
+    if not neutral and not all((block[0] + block[2]).any() for block in blocks):
+        return [four]
+    return _different(blocks, tolerances)
 
 
 def _without_rounding(block: Four, tolerances: list[float]) -> Any:
-    """Return a block whose entries are 0 where they are up to their tolerances."""
-    return tuple(np.where(np.abs(x) > small, x, 0.0) for x, small in zip(block, tolerances, strict=True))
+    """Return a block with zeros in place of parts that are 0 to rounding."""
+    return tuple(x if np.abs(x).max() > small else 0.0 * x for x, small in zip(block, tolerances, strict=True))
 
 
 def _different(blocks: list[Four], tolerances: list[float]) -> list[Four]:
@@ -96,11 +110,12 @@ def _block_of(direction: FloatArray, parts: Sequence[FloatArray], starts: IndexA
     numbers = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(direction))))  # of the eigenspaces
     while True:
         squares = np.add.reduceat(candidates**2, starts)
-        if squares.max() <= _COUPLED**2:
+        if squares.max() <= _COUPLED**2 or basis.shape[1] == len(direction):
             return basis
         vector = np.where(numbers == squares.argmax(), candidates, 0.0)
         basis = np.column_stack([basis, vector / np.linalg.norm(vector)])
         columns = np.column_stack([candidates, *(x @ basis[:, -1] for x in parts)])
-        columns -= basis @ (basis.T @ columns)
+        for _ in range(2):  # once leaves rounding, which may be all of a small remainder
+            columns -= basis @ (basis.T @ columns)
         best_columns = np.add.reduceat(columns**2, starts, axis=0).argmax(axis=1)
         candidates = columns[np.arange(len(columns)), best_columns[numbers]]

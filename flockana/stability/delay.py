@@ -293,10 +293,9 @@ def _margin_of_part(system: DelaySystem, advance: Callable[[float], object]) -> 
     (k0, d0), (k1, d1) = system.prompt, system.late
     four = (k0 / unit / unit, d0 / unit, k1 / unit / unit, d1 / unit)
     stiffness = float(np.abs(four[0] + four[2]).max())
-    crossing = modal_crossing(four, neutral := NEUTRAL * stiffness if system.neutral else 0.0)
-    if crossing is None:
-        top = 1.01 * system.highest / unit
-        crossing = _crossing_of_blocks(four, neutral, (_LOWEST * top if system.neutral else 0.0, top), advance)
+    top = 1.01 * system.highest / unit
+    neutral, band = (NEUTRAL * stiffness, (_LOWEST * top, top)) if system.neutral else (0.0, (0.0, top))
+    crossing = modal_crossing(four, neutral, band[0]) or _crossing_of_blocks(four, neutral, band, advance)
     delay = min(crossing.least, still_margin := _still_crossing(system) * unit)
     if still_margin < crossing.delay:
         return DelayMargin(still_margin / unit, 0.0, delay / unit)
@@ -307,9 +306,9 @@ def _crossing_of_blocks(
     four: Four, neutral: float, band: tuple[float, float], advance: Callable[[float], object]
 ) -> Crossing:
     """Return the least crossing in a band of frequencies, block by block, in each beyond the best so far only."""
-    blocks, best, certified_delay = split_into_blocks(four), NO_CROSSING, inf
+    blocks, best, certified_delay = split_into_blocks(four, neutral=band[0] > 0.0), NO_CROSSING, inf
     for k, block in enumerate(blocks):
-        crossing = modal_crossing(block, neutral)
+        crossing = modal_crossing(block, neutral, band[0])
         if crossing is None:
             crossing = least_crossing(block, *band, lambda share, k=k: advance((k + share) / len(blocks)), best)  # type: ignore[misc]
         certified_delay = min(certified_delay, crossing.least)

@@ -107,3 +107,37 @@ def test_weakly_coupled_blocks_are_kept_whole():
     coupled = (four[0] + 1e-9 * np.ones((5, 5)), *four[1:])
     assert len(split_into_blocks(four)) == 2
     assert split_into_blocks(coupled) == [coupled]
+
+
+@pytest.mark.parametrize(("n", "share"), [(8, 1e-6), (12, 1e-3), (20, 1e-3)])
+def test_many_directions_of_one_eigenspace_are_kept_whole(n, share):
+    rng = np.random.default_rng(1)
+    turns = np.kron(np.eye(n // 2), [[0.0, 1.0], [-1.0, 0.0]])
+    late = [gain * turns + share * (x - x.T) for gain, x in zip((0.9, 0.8), rng.normal(size=(2, n, n)), strict=True)]
+    four = (np.eye(n), 2.0 * np.eye(n), *late)
+    assert split_into_blocks(four) == [four]
+
+
+@pytest.mark.parametrize("power", [-36, -43, -45, -48])
+def test_blocks_far_softer_than_others_are_not_split_off(power):
+    """All entries are dyadic; the margin is that of the soft block alone."""
+    soft, wide = 2.0**power, 2.0**-8
+    k, d, late = (np.array(x) for x in ([[2, 0.75], [0.75, 1]], [[1, 0.25], [0.25, 0.75]], [[1, 0.25], [0.25, 0.5]]))
+    none = np.zeros((2, 2))
+
+    def mixed(x, y):
+        return np.block([[x + y, x - y], [x - y, x + y]]) / 2.0
+
+    prompt = mixed(soft * k, k), mixed(wide * d, 3.0 * d)
+    late_part = mixed(0.5 * soft * late, none), mixed(2.0 * wide * late, none)
+    assert len(split_into_blocks((*prompt, *late_part), neutral=False)) == 1
+    alone = delay_margin(DelaySystem((soft * k, wide * d), (0.5 * soft * late, 2.0 * wide * late)))
+    assert delay_margin(DelaySystem(prompt, late_part)).delay == pytest.approx(alone.delay, rel=1e-5)
+
+
+def test_drags_that_cancel_to_rounding_are_no_crossing_of_a_neutral_motion():
+    ring = (np.roll(np.eye(5), 1, 0) + np.roll(np.eye(5), -1, 0)) / 2.0
+    k, d = np.array([[2.0, 0.7], [0.7, 1.0]]), np.array([[1.0, 0.3], [0.3, 0.45]])
+    prompt = np.kron(np.eye(5) - ring, k), np.kron(np.eye(5), d)
+    margin = delay_margin(DelaySystem(prompt, (np.zeros((10, 10)), -np.kron(ring, d)), neutral=4))
+    assert margin.delay == margin.least == np.inf
