@@ -27,6 +27,7 @@ _STEPS, _TINY = 12, 1e-14  # of Newton's method, and its last one, relative
 _LOW = 1e-6  # of the largest frequency of a crossing polynomial's coefficients: what is below is a neutral motion
 _DOUBLE = 1e-6  # relative: imaginary parts of roots of a crossing polynomial that touch the axis to rounding
 _POWERS = 20  # of a matrix, for its Perron vector
+_SOFT = 1e6  # of N eps: what is softer beside the stiffest motion is not known to a millionth
 _WIDE = 2.0  # ratio of the ends of an interval that is looked at as a whole
 _SAFE = 0.99  # of an interval that exact arithmetic would exclude
 
@@ -192,8 +193,8 @@ def least_crossing(
 ) -> Crossing:
     """Return a bracket of the least crossing between frequencies `low` and `high`; low = 0 needs regular stiffness."""
     # The delay is one at which a root is on the axis; `least`, below which none is, is 0 if too many spectra are
-    # needed. `advance` is called with the share of the frequencies that is done. Later crossings than the best of
-    # elsewhere are not looked for.
+    # needed, or if the softest motion is so soft that rounding may hide its crossings. `advance` is called with the
+    # share of the frequencies that is done. Later crossings than the best of elsewhere are not looked for.
     todo, left = [(low, high)], MOST
     while todo:
         a, b = todo.pop()
@@ -216,7 +217,9 @@ def least_crossing(
         if b > midpoint + reach:
             todo.append((midpoint + reach, b))
         advance(1.0 - sum(top - bottom_end for bottom_end, top in todo) / (high - low))
-    return best_crossing
+    stiffnesses = np.linalg.svd(four[0] + four[2], compute_uv=False)
+    is_soft = low == 0.0 and stiffnesses[-1] < _SOFT * EPS * len(stiffnesses) * stiffnesses[0]
+    return best_crossing._replace(least=0.0) if is_soft else best_crossing
 
 
 def _refined(four: Four, omega: float, at: _Spectrum, index: int, worst: float) -> tuple[Crossing, int]:
