@@ -134,8 +134,8 @@ def test_blocks_far_softer_than_others_are_not_split_off(power):
     alone = delay_margin(DelaySystem((soft * k, wide * d), (0.5 * soft * late, 2.0 * wide * late)))
     assert alone.certified
     margin = delay_margin(DelaySystem(prompt, late_part))
-    assert margin.delay == pytest.approx(alone.delay, rel=1e-5)
-    assert margin.least == 0.0  # of a motion that soft rounding may hide another crossing
+    assert margin.delay >= (1.0 - 1e-5) * alone.delay
+    assert margin.least == 0.0  # of a motion that soft rounding may hide the crossing: the margin is at most the delay
 
 
 def test_drags_that_cancel_to_rounding_are_no_crossing_of_a_neutral_motion():
