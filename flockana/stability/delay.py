@@ -235,7 +235,8 @@ def delay_margin(system: DelaySystem, *, progress: bool = False, limit: float = 
     (`flockana.stability.axis_crossings`): no band is too narrow for it. A symmetric lattice is searched block by block,
     one for each type of motion (`flockana.stability.common_blocks`). Parts that hear others and are not heard by
     them are looked at by themselves. Neutral motions are set apart; a flock that has any is searched from a millionth
-    of its highest frequency on.
+    of its highest frequency on. Nothing is certified (`least` is 0) where the softest motion is so much softer than the
+    stiffest that rounding may hide its crossings.
 
     Parameters
     ----------
@@ -308,7 +309,7 @@ def _crossing_of_blocks(
     """Return the least crossing in a band of frequencies, block by block, in each beyond the best so far only."""
     blocks, best, certified_delay = split_into_blocks(four, neutral=band[0] > 0.0), NO_CROSSING, inf
     for k, block in enumerate(blocks):
-        crossing = modal_crossing(block, neutral, band[0])
+        crossing = None if block is four else modal_crossing(block, neutral, band[0])  # the whole has no common modes
         if crossing is None:
             crossing = least_crossing(block, *band, lambda share, k=k: advance((k + share) / len(blocks)), best)  # type: ignore[misc]
         certified_delay = min(certified_delay, crossing.least)
