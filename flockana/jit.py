@@ -114,11 +114,33 @@ class Kernel:
             with compiling(_mark(self.function, types) if self.kept else None, self.function.__name__):
                 _opened(dispatcher).compile(types)
             _ensure_plain(self.function.__name__, dispatcher.overloads[types].signature.return_type)
+            if any(_holds_callback(numba, kind) for kind in types):
+                dispatcher = _audible(dispatcher)
         self._compiled = dispatcher
 
     def __reduce__(self) -> Any:
         """Pickle a module's own function by its name."""
         return self.__qualname__ if _named(self) else (type(self), (self.function, self.kept, self.options))
+
+
+def _holds_callback(numba: Any, kind: Any) -> bool:
+    """Return True for the type of a callback, or of a tuple with one."""
+    parts = getattr(kind, "types", ())
+    return isinstance(kind, numba.types.FunctionType) or any(_holds_callback(numba, part) for part in parts)
+
+
+def _audible(dispatcher: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function that calls numba's, where an alarm or Ctrl-C while numba unpacks callbacks is not lost."""
+
+    def call(*arguments: Any) -> Any:
+        with raise_swallowed():
+            try:
+                return dispatcher(*arguments)
+            except TypeError as error:  # of other types; or what numba makes of the handler's own exception
+                refusal = error
+        raise refusal
+
+    return call
 
 
 def _ensure_plain(name: str, result: Any) -> None:

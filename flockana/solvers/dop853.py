@@ -11,7 +11,6 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
-from numpy.polynomial import polynomial
 
 from flockana.solvers.solver import AdaptivePair, FloatArray
 from flockana.solvers.tableau import Tableau, shared_rows
@@ -99,7 +98,7 @@ class DOP853(AdaptivePair):
         interpolant, factors = np.zeros((count, len(rows))), ((0.0, 1.0), (1.0, -1.0))
         power = np.ones(1)
         for k, row in enumerate(rows):
-            power = np.asarray(polynomial.polymul(power, factors[k % 2]), dtype=np.float64)
+            power = np.convolve(power, factors[k % 2])
             interpolant[:, : len(power) - 1] += np.outer(row, power[1:])
         storage_rows, exponent = shared_rows(a, estimates, interpolant), -1.0 / (self.error_order + 1)
         return Tableau(a, np.array(C), estimates, interpolant, storage_rows, STAGES, exponent)

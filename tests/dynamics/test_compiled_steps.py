@@ -327,6 +327,49 @@ def test_an_alarm_during_a_compiled_run_raises_its_own_exception():
     assert (ended.returncode, ended.stdout) == (0, "12\n"), ended.stderr
 
 
+UNPACKING = """
+import signal, sys
+import numpy as np
+from flockana import Algorithm1, simulate
+
+class Alarm(Exception):
+    pass
+
+def ring(number, frame):
+    raise Alarm
+
+def interrupt(at):
+    calls = []
+    def count(frame, event, argument):
+        if event == "call" and frame.f_code.co_filename.endswith(("function_type.py", "serialize.py")):
+            calls.append(frame.f_code.co_name)
+            if len(calls) == at:
+                signal.raise_signal(signal.SIGALRM)
+    sys.setprofile(count)
+    try:
+        simulate(Algorithm1(), *calm, (0.0, 0.2))
+    except Alarm:
+        return True
+    finally:
+        sys.setprofile(None)
+    return not calls[at - 1:]
+
+calm = np.random.default_rng(0).uniform(-6.0, 6.0, (2, 5, 2))
+interrupt(0)
+assert not interrupt(0)  # there are such calls
+signal.signal(signal.SIGALRM, ring)
+calls = [k for k in range(1, 100) if not interrupt(k)]
+print(calls)
+"""
+
+
+@posix
+def test_an_alarm_while_numba_unpacks_a_callback_is_not_lost():
+    """In a process of its own, as the one above; numba hands a callback to a kernel by calls of Python functions."""
+    ended = subprocess.run([sys.executable, "-c", UNPACKING], capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout) == (0, "[]\n"), ended.stderr
+
+
 @pytest.mark.slow
 def test_a_pair_law_of_many_parameters_or_one_that_allocates_is_integrated_all_the_same():
     class Long(AlphaInteraction):
