@@ -49,7 +49,7 @@ _OPEN: list[Any] = []  # dispatchers that compile for new types, until all is co
 
 
 class Kernel:
-    """Function compiled at its first call."""
+    """Function that numba compiles at its first call."""
 
     def __init__(self, function: Callable[..., Any], kept: bool, options: dict[str, Any]) -> None:
         functools.update_wrapper(self, function)
@@ -130,7 +130,7 @@ def _holds_callback(numba: Any, kind: Any) -> bool:
 
 
 def _audible(dispatcher: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that calls numba's, where an alarm or Ctrl-C while numba unpacks callbacks is not lost."""
+    """Return a wrapper of a numba function that loses no alarm or Ctrl-C while numba unpacks callbacks."""
 
     def call(*arguments: Any) -> Any:
         with raise_swallowed():

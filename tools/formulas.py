@@ -101,7 +101,7 @@ from flockana.certified.balls import monotone, place, square"""
 )
 _PAIR_ALPHA = '''@register_jitable
 def pair_alpha(s2, par):
-    """(s_ij, a_ij) at squared distance s2."""
+    """Force weight s_ij and adjacency a_ij of a pair at squared distance s2."""
     z, root = norm_alpha(s2, par)
     return stress_alpha(z, root, par)'''
 
@@ -175,8 +175,12 @@ def _scalars() -> Iterable[str]:
     yield _kernel("taper(z, h)", "ρ_h(z) for z ≥ 0.", Bump(Z, _H).stable, moving=[Z])
     yield _kernel("bump(z, h)", "ρ_h(z), 0 for z < 0.", sp.Piecewise((0, z < 0), (_TAPER(z, _H), True)))
     yield _kernel("bump_slope(z, h)", "dρ_h/dz, 0 at the ends of the taper.", BumpSlope(Z, _H).composed, lazy=True)
-    yield _kernel("phi_above(s, a, b, c)", "Numerator of φ.", PhiAbove(*sigmoid).stable, moving=[_S])
-    yield _kernel("phi_below(s, a, b, c)", "Denominator of φ.", PhiBelow(*sigmoid).stable, moving=[_S])
+    yield _kernel(
+        "phi_above(s, a, b, c)", "Numerator of the uneven sigmoid φ(s).", PhiAbove(*sigmoid).stable, moving=[_S]
+    )
+    yield _kernel(
+        "phi_below(s, a, b, c)", "Denominator of the uneven sigmoid φ(s).", PhiBelow(*sigmoid).stable, moving=[_S]
+    )
     yield _kernel("phi(s, a, b, c)", "φ(s) = ½[(a+b) σ₁(s+c) + (a−b)] for c = (b−a)/√(4ab).", quotient)
     yield _kernel("phi_integral(s, a, b, c)", "∫₀ˢ φ ≥ 0.", PhiIntegral(*sigmoid).stable, moving=[_S])
 
@@ -194,10 +198,19 @@ def _pairs() -> Iterable[str]:
     yield _kernel("psi_alpha(z, par, panels)", "ψ_α(z), constant from r_α on.", alpha.potential(far, offset), lazy=True)
     yield _kernel("adjacency_alpha(z, par)", "a_ij by z = ‖q_j − q_i‖_σ.", alpha.bump)
     yield _kernel("norm_alpha(s2, par)", "(‖x‖_σ, √(1 + ε‖x‖²)).", norm.stable, sp.sqrt(1 + alpha.eps * S2))
-    yield _kernel("stress_alpha(z, root, par)", "(s_ij, a_ij) from `norm_alpha`.", *in_sums, moving=[Z, ROOT])
+    yield _kernel(
+        "stress_alpha(z, root, par)",
+        "Force weight s_ij and adjacency a_ij from `norm_alpha`.",
+        *in_sums,
+        moving=[Z, ROOT],
+    )
     yield _PAIR_ALPHA
-    yield _kernel("pair_alpha_slope(s2, par)", "d(s_ij)/d(s2), for the Hessian of V.", alpha.slopes[0])
-    yield _kernel("pair_alpha_adjacency_slope(s2, par)", "d(a_ij)/d(s2), for Jacobians.", alpha.slopes[1])
+    yield _kernel("pair_alpha_slope(s2, par)", "Derivative d(s_ij)/d(s2) of a force weight.", alpha.slopes[0])
+    yield _kernel(
+        "pair_alpha_adjacency_slope(s2, par)",
+        "Derivative d(a_ij)/d(s2) of an adjacency, for Jacobians.",
+        alpha.slopes[1],
+    )
     yield _kernel("pair_alpha_potential(s2, par, panels)", "ψ_α at squared distance s2.", at)
     psi = beta.potential(sp.S.Zero, number("BETA_OFFSET")).subs(beta.closed, sp.Function("integral_beta")(Z, _PAR))
     yield _kernel("phi_beta(z, par)", "φ_β(z) = ρ_h(z/d_β)(σ₁((z − d_β)/ℓ²) − 1).", beta.action)
@@ -229,7 +242,7 @@ def _balls() -> Iterable[str]:
     yield _monotone("sigma_1(s)", "σ₁(s)", Sigma1(_S).composed)
     yield _monotone("taper(s)", "Half-cosine of ρ_h", Taper(_S).composed)
     yield _ball("phi(s, a, b, c)", "φ(s), increasing.", Phi(_S, _A, _B, _C).composed)
-    yield _ball("pair(s2, law, piece)", "(weight, adjacency) at squared distance s2.", *law.pair)
+    yield _ball("pair(s2, law, piece)", "Force weight and adjacency of a pair at squared distance s2.", *law.pair)
     yield _ball("slopes(s2, law, piece)", "Derivatives of (weight, adjacency) by s2.", *law.slopes)
     yield _ball("stiffness(s2, law, piece)", "F''(ℓ) of F = ψ(‖·‖_σ), by s2 = ℓ².", law.stiffness)
     yield _ball("closed(z, law)", "An antiderivative of the action where ρ_h = 1.", written(law.closed))

@@ -34,7 +34,7 @@ def digest(data: Any) -> str:
 
 
 def with_digest(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return plain data with its digest added, in the form of files."""
+    """Return plain data with its SHA-256 digest added as a further entry, as files store it."""
     return {**data, SEAL: digest(dict(data))}
 
 
@@ -70,13 +70,13 @@ def public_name(item: Any, modules: Mapping[str, str] = MappingProxyType({})) ->
 
 
 def sealed(evidence: _Evidence) -> _Evidence:
-    """Return a copy of a frozen dataclass with its seal; for functions that compute or read it."""
+    """Attach a seal, the checksums of all its fields, to a frozen dataclass and return the same object."""
     object.__setattr__(evidence, _ATTRIBUTE, seal_of(evidence))
     return evidence
 
 
 def seal_of(evidence: Any, modules: Mapping[str, str] = MappingProxyType({})) -> dict[str, str]:
-    """Return the checksum of all fields of a dataclass, by name."""
+    """Return the seal of a dataclass: the checksum of each field, by the field's name."""
     return {field.name: checksum(getattr(evidence, field.name), modules) for field in fields(evidence)}
 
 
@@ -105,7 +105,7 @@ def ensure_sealed(name: str, evidence: Any, source: str, remedy: str) -> None:
 
 
 def _parts_of(value: Any, within: tuple[int, ...], modules: Mapping[str, str]) -> Iterator[Any]:
-    """Yield the text and bytes for a value's digest; `within` are the enclosing objects."""
+    """Yield the texts and buffers of bytes over which the digest of a value is taken."""
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, np.ndarray | list | tuple):

@@ -11,7 +11,7 @@ SOURCES = "flockana.sources"
 
 
 def source_files(pattern: str) -> Iterator[Path]:
-    """Yield the files of all sources that match a pattern, in order of names."""
+    """Yield the files that match a pattern in the subpackages of `flockana.sources`, sorted by name."""
     for folder in import_module(SOURCES).__path__:
         yield from sorted(Path(folder).glob(f"*/{pattern}"))
 
@@ -23,7 +23,7 @@ def modules(package: str) -> Iterator[ModuleType]:
 
 
 def source_modules(kind: str) -> Iterator[ModuleType]:
-    """Import the modules of one kind of every source: ``SOURCE/KIND.py``, or all files of ``SOURCE/KIND/``."""
+    """Import the modules of one kind, such as laws, from all subpackages of `flockana.sources`."""
     for module_info in pkgutil.iter_modules(import_module(SOURCES).__path__, f"{SOURCES}."):
         name = f"{module_info.name}.{kind}"
         spec = find_spec(name) if module_info.ispkg else None

@@ -16,7 +16,7 @@ def overrides_consistently(kind: type, name: str, others: Iterable[str]) -> bool
 
 
 def ensure_consistent(item: Any) -> None:
-    """Raise if a law overrides a public method and inherits its counterpart for integrators."""
+    """Raise if a law overrides a public method, but not the method that integrators call for it."""
     # ``derived_methods`` of a class of the library are public methods that follow from one which integrators call:
     # a user's class that changes only the former would be integrated without the change, as would an instance with a
     # method of its own.

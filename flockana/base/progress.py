@@ -77,7 +77,7 @@ def _console() -> Any:
 
 
 def _bar(console: Any, counted: bool, steady: bool) -> Any:
-    """Return a transient bar of rich with these columns."""
+    """Return a transient progress bar of rich, with counts and remaining time on request."""
     from rich import progress as rich
 
     columns = [rich.BarColumn(24), *[rich.MofNCompleteColumn()] * counted, rich.TimeElapsedColumn()]

@@ -40,15 +40,15 @@ class Pull:
         return (1 + norm2(away) / (unit * unit)).rsqrt()
 
     def piece(self, x: Sequence[arb]) -> Piece:
-        """Return the piece of the law that holds a box: `Piece.CORE`, as it is analytic everywhere."""
+        """Return the smooth piece of the γ-agent's pull at a position: `Piece.CORE`, as it is one formula."""
         return Piece.CORE
 
     def switches(self, x: FloatArray, v: FloatArray) -> list[tuple[float, float]]:
-        """Return the switches of the pull: none, as it is analytic everywhere."""
+        """Return the switching distances of the γ-agent's pull: none, as it is analytic everywhere."""
         return []
 
     def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
-        """Return the force at a position and a velocity."""
+        """Return the force that a γ-agent exerts on an agent of given position and velocity."""
         displacement = self._away(t, x)
         if self.unit is not None:
             saturation_factor = self._saturation(displacement, self.unit)
@@ -57,7 +57,7 @@ class Pull:
         return [-self.stiffness * a - self.damping * (w - p) for a, w, p in rows]
 
     def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
-        """Return the derivatives of the force by position and velocity, as two tables."""
+        """Return the Jacobians of a γ-agent's pull by the agent's position and velocity, as two matrices."""
         rows = list(enumerate(displacement := self._away(t, x)))
         pull, drag = ([[-gain * (k == h) for h, _ in rows] for k, _ in rows] for gain in (self.stiffness, self.damping))
         if self.unit is not None:
@@ -71,7 +71,7 @@ class Pull:
         return -self.damping * (norm2(v) - dot(v, self.declared))
 
     def drift(self, t: arb, x: Sequence[arb]) -> list[arb]:
-        """Return the time derivative of the pull, from the motion of q_r."""
+        """Return the partial derivative by time of the γ-agent's pull, from the motion of q_r."""
         pull = self.slopes(t, x, x, Piece.CORE)[0]
         return [-dot(row, self.velocity) for row in pull]
 
@@ -97,18 +97,18 @@ class SphereTerm:
         return norm(minus(x, self.centre)) - self.radius
 
     def piece(self, x: Sequence[arb]) -> Piece:
-        """Return the piece of ρ_h that holds the clearance of every point of a box."""
+        """Return the smooth piece of the bump function ρ_h for the clearances of all points of a box."""
         return self.beta.piece(square(self.clearance(x)))
 
     def switches(self, x: FloatArray, v: FloatArray) -> list[tuple[float, float]]:
-        """Return the distances of the clearance from the switches h d_β and d_β, and their rates."""
+        """Return how far an agent's clearance is from each switch h d_β, d_β of the force, and the rates."""
         displacement = x - np.array([float(y) for y in self.centre])
         distance = float(np.linalg.norm(displacement))
         speed = float(displacement @ v) / distance if distance > 0.0 else float(np.linalg.norm(v))
         return [(distance - float(self.radius) - switch, speed) for switch in self.beta.switches]
 
     def power(self, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> Any:
-        """Return c2β b ⟨v, p̂ − v⟩ = −c2β b ((1 − μ) ‖v − ⟨a, v⟩ a‖² + ⟨a, v⟩²), not positive outside."""
+        """Return the power c2β b ⟨v, p̂ − v⟩ of the obstacle's damping force on an agent."""
         a, distance = self._away(x)
         clearance, radial = distance - self.radius, dot(a, v)
         transverse_square = norm2([w - radial * k for k, w in zip(a, v, strict=True)])
@@ -122,7 +122,7 @@ class SphereTerm:
         return [arb(0)] * len(x)
 
     def force(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> list[Any]:
-        """Return the force at a position and a velocity."""
+        """Return the force of a spherical obstacle on an agent of given position and velocity."""
         a, distance = self._away(x)
         clearance, radial = distance - self.radius, dot(a, v)
         weight, adjacency = self.beta.pair(square(clearance), piece)
@@ -130,7 +130,7 @@ class SphereTerm:
         return [-push * k - drag * (free_share * (w - radial * k) + radial * k) for k, w in zip(a, v, strict=True)]
 
     def slopes(self, t: Any, x: Sequence[Any], v: Sequence[Any], piece: Piece) -> tuple[Block, Block]:
-        """Return the derivatives of the force by position and velocity, two tables."""
+        """Return the Jacobians of a spherical obstacle's force by the agent's position and velocity."""
         # With P = I − a aᵀ: ∂a = P/‖x − y‖, ∂c = a, and p̂ turns by −(R/‖x − y‖²)(Pv aᵀ + ⟨a, v⟩ P + a (Pv)ᵀ).
         a, distance = self._away(x)
         clearance, radial = distance - self.radius, dot(a, v)

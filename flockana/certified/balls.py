@@ -18,7 +18,7 @@ from flockana.base.interrupts import ALARMS, defer_sigint
 
 
 class Piece(Enum):
-    """Piece of ρ_h on which the distance of a pair lies, or possibly two."""
+    """Interval of distances on which the bump function ρ_h is analytic, or the case between two."""
 
     CORE = "z < h r_α"
     TAPER = "h r_α < z < r_α"
@@ -38,7 +38,7 @@ def exact(x: Any) -> fmpq:
 
 
 def hull(*balls: arb) -> arb:
-    """Return the smallest ball around several."""
+    """Return the smallest ball that contains all given balls."""
     first_ball, *later_balls = balls
     for item in later_balls:
         first_ball = first_ball.union(item)
@@ -78,12 +78,12 @@ def norm(x: Sequence[arb]) -> arb:
 
 
 def monotone(f: Callable[[Any], Any], x: Any) -> Any:
-    """Return the range of a monotone function on a ball, from the ends of the ball; the function of a series."""
+    """Return the range of a monotone function on a ball, from the ball's ends; on a series, its value."""
     return f(x) if not isinstance(x, arb) or x.is_exact() else hull(f(x.lower()), f(x.upper()))
 
 
 def clamp(x: arb) -> arb:
-    """Return the nearest number in [0, 1]."""
+    """Return the number of [0, 1] that is nearest to a given one."""
     return x.max(arb(0)).min(arb(1))
 
 
@@ -114,7 +114,7 @@ class _Exact:
         self._ensure_valid()
 
     def _ensure_valid(self) -> None:
-        """Raise ValueError on a number out of its range."""
+        """Raise ValueError if a parameter is out of its admissible range."""
 
     @classmethod
     def of(cls, interaction: Any) -> Self:

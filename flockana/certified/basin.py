@@ -110,7 +110,7 @@ class Basin(ShortRepr):
 
     @property
     def share(self) -> float:
-        """Radius over desired distance, ρ/d."""
+        """Radius ρ of the certified basin in units of the desired distance d, ρ/d."""
         return float(self.radius) / float(self.law.alpha.d)
 
     def above(self, q: Any, p: Any) -> tuple[arb, arb]:
@@ -245,7 +245,7 @@ def _largest(around: BondTable) -> float:
 
 
 def _assemble_basin(around: BondTable, law: Any, computed: list[float], shells: Shells) -> Basin | None:
-    """Return the basin of proved shells; None where the net may part or nothing damps."""
+    """Return the basin that curvature shells prove; None if a condition of the proof is not certain."""
     u, reach = around.u, ROOT_TWO * shells.radius
     link_lengths = {pair: distance for pair, (_, distance) in around.gaps.items()}
     second_eigenvalue, degree = damping(u, link_lengths, reach)

@@ -25,11 +25,11 @@ class SampledBasin:
 
     @property
     def shares(self) -> FloatArray:
-        """Share of the starts that returned."""
+        """Fraction of the random starts at each distance that returned to the orbit of the equilibrium."""
         return self.returned / self.runs
 
     def interval(self, *, level: float = 0.95) -> tuple[FloatArray, FloatArray]:
-        """Return the exact confidence interval of each share."""
+        """Return exact confidence intervals of the probability that a start returns, at each distance."""
         return clopper_pearson(self.returned, np.full_like(self.returned, self.runs), level=level)
 
 

@@ -69,7 +69,7 @@ def basin_certificate(basin: Basin) -> dict[str, Any]:
 
 
 def head(kind: str) -> dict[str, Any]:
-    """Return the common first entries of every certificate of a kind."""
+    """Return the first entries that all certificates of a kind share: format, statement and versions."""
     statement, prose = STATEMENTS[kind]
     version_table = {"flockana": __version__, "python-flint": version("python-flint")}
     return {"format": FORMAT, "kind": kind, "statement": statement, "prose": list(prose), "made_with": version_table}
@@ -179,7 +179,7 @@ def _paths(tube: Tube) -> list[list[list[str]]]:
 
 
 def _polynomials(flow: Flow, t: arb, state: list[arb], pieces: tuple[Piece, ...]) -> list[list[arb]]:
-    """Return polynomials of the positions in a run's steps, of third order where a pair changes its piece."""
+    """Return polynomials of the positions in a step, cubic where a pair crosses a switching distance."""
     half = flow.n * flow.m
     if Piece.SWITCH not in pieces:
         return [[c.mid() for c in row] for row in flow.taylor(t, state, _ORDER, pieces)[:half]]
@@ -189,7 +189,7 @@ def _polynomials(flow: Flow, t: arb, state: list[arb], pieces: tuple[Piece, ...]
 
 
 def _followed(run: Run, tube: Tube, paths: list[list[list[str]]]) -> dict[str, Any]:
-    """Return the tube's error bounds for a path, with bounds of distances, radii and energy."""
+    """Return verified error bounds of a run's polynomial paths, and bounds of distances, radii and energy."""
     start = state = [arb(x) for x in (*tube.q0.ravel(), *tube.p0.ravel())]
     error, errors, boxes = arb(0), [], []
     for t, end, text in zip(tube.t[:-1], tube.t[1:], paths, strict=True):

@@ -204,7 +204,7 @@ class Net:
         return [list(flat[self.m * i : self.m * (i + 1)]) for i in range(self.n)]
 
     def translations(self) -> list[list[arb]]:
-        """Return the translations along the axes."""
+        """Return the displacement vectors of all agents by one unit along each axis."""
         return [[arb(int(k % self.m == a)) for k in range(self.n * self.m)] for a in range(self.m)]
 
     def slope(self, x: Sequence[Sequence[arb]], held: Sequence[Sequence[arb]]) -> arb_mat:
@@ -246,7 +246,7 @@ class Net:
     def radial(
         self, x: list[list[arb]], gaps: Mapping[Pair, list[arb]], floors: Mapping[Pair, tuple[Fraction, Fraction]]
     ) -> arb_mat:
-        """Return a matrix below the Hessian, from bounds of its pairs; rigid motions have large eigenvalues."""
+        """Return a matrix below the Hessian from pair bounds, with large eigenvalues on rigid motions."""
         blocks = {}
         for pair, (axial_floor, transverse_floor) in floors.items():
             gap = gaps[pair]
@@ -273,7 +273,7 @@ class Net:
         return arb_mat(rows)
 
     def floor_holds(self, rest: arb, eta: Fraction, along: Fraction, across: Fraction) -> bool:
-        """Return whether ⟨e, ∇²f e⟩ >= along ⟨u, e⟩² + across (|e|² − ⟨u, e⟩²) for every displacement |e| <= eta."""
+        """Return whether lower bounds of a pair's curvatures hold for all displacements of length at most eta."""
         # With x the change of length and b = 1 − cos of the turn, left − right is a square in b, of which a bound below
         # is linear on [0, most]: see `shells`. Intervals of x are halved until the bound is certain.
         cells = [(-eta, eta, 0)]
@@ -298,7 +298,7 @@ class Net:
         return True
 
     def unique_projection(self, x: Sequence[Sequence[arb]], radius: arb) -> bool:
-        """Return whether the nearest point of the orbit is unique up to the radius."""
+        """Return whether states within the radius have a unique nearest point on the equilibrium's orbit."""
         columns = list(zip(*x, strict=True))
         gram = [[dot(a, b) for b in columns] for a in columns]
         trace = sum((gram[a][a] for a in range(self.m)), arb(0))
@@ -314,5 +314,5 @@ def proposed_inverse(matrix: arb_mat) -> arb_mat:
 
 
 def block(gap: Sequence[arb], across: arb, more: arb) -> list[list[arb]]:
-    """Return the pair block across·1 + more·gap gapᵀ."""
+    """Return the m × m matrix across·1 + more·gap gapᵀ of a pair with relative position gap."""
     return [[more * y * z + (across if a == b else 0) for b, z in enumerate(gap)] for a, y in enumerate(gap)]

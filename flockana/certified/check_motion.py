@@ -52,7 +52,7 @@ class Motion:
     spheres: tuple[Sphere, ...]
 
     def shifted(self, path: Sequence[Vector], s: arb) -> list[Vector]:
-        """Return the Taylor coefficients of q, then of p = q', about a later time s of the step."""
+        """Return the Taylor coefficients of positions and velocities, re-expanded about time s of a step."""
         rows = [
             [sum((comb(i, j) * row[i] * s ** (i - j) for i in range(j, len(row))), arb(0)) for j in range(len(row))]
             for row in path
@@ -60,7 +60,7 @@ class Motion:
         return rows + [[(j + 1) * row[j + 1] for j in range(len(row) - 1)] for row in rows]
 
     def at(self, path: Sequence[Vector], s: arb) -> Vector:
-        """Return positions and velocities at a time s into the step."""
+        """Return positions and velocities on a polynomial path at a time s into its step."""
         return [row[0] for row in self.shifted(path, s)]
 
     def agents(self, x: Sequence[Any]) -> list[Sequence[Any]]:
@@ -73,7 +73,7 @@ class Motion:
         return ((i, j, [b - a for a, b in zip(q[i], q[j], strict=True)]) for i, j in combinations(range(self.n), 2))
 
     def pieces(self, q: Vector) -> list[int | None]:
-        """Return each pair's piece: 0 up to h r_α, 1 up to r_α, 2 beyond, None if undecided."""
+        """Return the piece (0, 1, 2; None if undecided) of ρ_h for each pair and each agent with a sphere."""
         norms = (sigma_of_square(norm2(gap), self.par.eps) for _, _, gap in self.gaps(q))
         piece_numbers = [piece_of(z, r_alpha(self.par), self.par.h) for z in norms]
         return piece_numbers + [sphere.piece(x) for sphere in self.spheres for x in self.agents(q)]
@@ -102,7 +102,7 @@ class Motion:
         return u
 
     def near(self) -> list[tuple[int, Sphere]]:
-        """Return the pairs of an agent and a sphere, in the order of `pieces`."""
+        """Return (i, sphere) for every agent i and every spherical obstacle."""
         return [(i, sphere) for sphere in self.spheres for i in range(self.n)]
 
     def pull(self, x: Vector) -> list[Vector]:
@@ -113,7 +113,7 @@ class Motion:
         return [[gain * ((slant if k == c else 0) - cube * a * b) for c, b in rows] for k, a in rows]
 
     def pair(self, gap: Sequence[arb_series], piece: int | None) -> tuple[Any, Any]:
-        """Return (φ_α/√(1 + εs²), a_ij) of a pair as a series; on an unknown piece as balls for the whole step."""
+        """Return (φ_α/√(1 + εs²), a_ij) of a pair; as constant balls if its piece of ρ_h is undecided."""
         par, s2 = self.par, norm2(gap)
         if piece is None:
             z = sigma_of_square(s2[0], par.eps)
@@ -126,7 +126,7 @@ class Motion:
         return rho * ((a + b) * s / (1 + s * s).sqrt() + (a - b)) / 2 / root, rho
 
     def slope(self, box: Vector) -> arb_mat:
-        """Return ∂(p, u)/∂(q, p) on a box, across the pieces of the pair law."""
+        """Return the Jacobian ∂(p, u)/∂(q, p) of the equations of motion on a box of states."""
         size, m, g, par = self.n * self.m, self.m, self.gain, self.par
         rows = [[arb(int(c == r + size)) for c in range(2 * size)] for r in range(2 * size)]
         for k in range(size):
@@ -155,11 +155,11 @@ class Motion:
         return arb_mat(rows)
 
     def length(self, x: Sequence[arb]) -> arb:
-        """Return an upper bound of the Euclidean norm."""
+        """Return an upper bound of the Euclidean norm of a vector of balls."""
         return arb(norm(x).upper())
 
     def lengths(self, box: Vector) -> list[arb]:
-        """Return the distances of the pairs."""
+        """Return the distances of all pairs of agents on a box of states."""
         return [norm(gap) for _, _, gap in self.gaps(box)]
 
     def radii(self, box: Vector) -> list[arb]:
@@ -173,7 +173,7 @@ class Motion:
         return [[a - b for a, b in zip(row, mean_values, strict=True)] for row in rows]
 
     def energy(self, x: Vector) -> arb:
-        """Return the energy c1α V + c1γ J + K in the moving frame; with a bounded pull, in the given frame."""
+        """Return the energy c1α V + c1γ J + K in the moving frame; under Algorithm 3, H in the fixed frame."""
         size = self.n * self.m
         pairs = (psi_alpha(sigma_of_square(square(distance), self.par.eps), self.par) for distance in self.lengths(x))
         total = self.gain["c1_alpha"] * sum(pairs, arb(0))
@@ -211,7 +211,7 @@ class Sphere:
         return cls(par, centre, *parameters)
 
     def clearance(self, x: Sequence[arb]) -> arb:
-        """Return ‖x − y‖ − R."""
+        """Return the clearance ‖x − y‖ − R of a point x from the sphere."""
         return norm([a - b for a, b in zip(x, self.centre, strict=True)]) - self.radius
 
     def height(self, x: Sequence[arb]) -> arb:
@@ -223,11 +223,11 @@ class Sphere:
         return self.push * psi_beta(self.height(x), self.par)
 
     def piece(self, x: Sequence[arb]) -> int | None:
-        """Return the piece of ρ_h on which an agent's clearance lies (`piece_of`)."""
+        """Return the piece (0, 1, 2; None if undecided) of ρ_h on which an agent's clearance lies."""
         return piece_of(self.height(x), d_beta(self.par), self.par.h)
 
     def force(self, x: Sequence[Any], v: Sequence[Any], piece: int | None) -> list[Any]:
-        """Return the force of a sphere along series of position and velocity; constant balls on an unknown piece."""
+        """Return the sphere's force on an agent as series in time; as balls if the piece of ρ_h is undecided."""
         if piece is None:
             x, v = [a[0] for a in x], [a[0] for a in v]
         e, distance = self._direction(x)
@@ -245,7 +245,7 @@ class Sphere:
         return [-size * a - self.drag * rho * (w - share * (w - axial_part * a)) for a, w in zip(e, v, strict=True)]
 
     def slope(self, x: Sequence[arb], v: Sequence[arb]) -> tuple[list[list[arb]], list[list[arb]]]:
-        """Return ∂(force)/∂x and ∂(force)/∂v on a box, across the pieces."""
+        """Return the Jacobians of the sphere's force by an agent's position and velocity, on a box."""
         e, distance = self._direction(x)
         c, along, share = distance - self.radius, dot(e, v), self.radius / distance
         stretch, z = 1 + ball(self.par.eps) * square(c), sigma_of_square(square(c), self.par.eps)
@@ -263,18 +263,18 @@ class Sphere:
         return by_x, by_v
 
     def _direction(self, x: Sequence[Any]) -> tuple[list[Any], Any]:
-        """Return the unit vector e from the centre, and its derivative D."""
+        """Return the unit vector e from the sphere's centre to an agent, and the distance D between them."""
         displacement = [a - b for a, b in zip(x, self.centre, strict=True)]
         distance = norm2(displacement).sqrt()
         return [a / distance for a in displacement], distance
 
 
 def piece_of(z: arb, cutoff: arb, h: Any) -> int | None:
-    """Return the piece of ρ_h on which a σ-norm is: 0 up to h·cutoff, 1 up to the cutoff, 2 beyond, None if on two."""
+    """Return the piece of ρ_h for a σ-norm: 0 below h·cutoff, 1 to the cutoff, 2 beyond; None if undecided."""
     knee = ball(h) * cutoff
     return 0 if z < knee else 2 if z > cutoff else 1 if z > knee and z < cutoff else None
 
 
 def taper(z: Any, h: arb, piece: int) -> Any:
-    """Return ρ_h(z) of a series on piece 0 or 1."""
+    """Return the bump ρ_h(z) of a series: 1 on piece 0, a half-cosine on piece 1."""
     return arb_series([1]) if piece == 0 else (1 + ((z - h) / (1 - h)).cos_pi()) / 2

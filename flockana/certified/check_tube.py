@@ -219,7 +219,7 @@ class Run(Motion):
         raise RejectedError("no bound of the growth of errors")
 
     def norm(self, x: Vector) -> arb:
-        """Return the weighted norm √(w²|q|² + |p|²)."""
+        """Return the weighted norm √(w²|q|² + |p|²) of a vector of positions q and velocities p."""
         size = self.n * self.m
         return self.length([*(self.weight * y for y in x[:size]), *x[size:]])
 

@@ -54,7 +54,7 @@ _DIGITS = 4
 
 @dataclass(frozen=True)
 class LengthCells:
-    """Cached enclosures of F'' and T over cells of lengths about ℓ0, shared by all shells."""
+    """Cached enclosures of stiffness F'' and tension F'/ℓ of a pair over intervals of its length."""
 
     u: Structure
     rest: arb
@@ -62,7 +62,7 @@ class LengthCells:
     kept: dict[tuple[int, int], tuple[arb, arb, arb]] = field(default_factory=dict, compare=False)
 
     def at(self, level: int, k: int) -> tuple[arb, arb, arb]:
-        """Return (x, F'', T) on one cell of lengths: x in reach·[k, k + 1]/2^level."""
+        """Return (x, F'', T): change of length, stiffness and tension of a pair on one interval of lengths."""
         if (level, k) not in self.kept:
             unit = self.reach / 2**level
             x = ball(unit * k).union(ball(unit * (k + 1)))
@@ -71,7 +71,7 @@ class LengthCells:
         return self.kept[level, k]
 
     def holds(self, shell: int, along: fmpq, across: fmpq) -> bool:
-        """Return whether (α, β) certainly are lower bounds of a bond's curvatures up to a shell; False if undecided."""
+        """Return whether (α, β) certainly bound a pair's curvatures from below up to a shell."""
         cells = [(LEVELS, k) for k in range(-shell, shell)]
         limit = square(ball(self.reach * shell / SHELLS))
         while cells:
@@ -96,7 +96,7 @@ class LengthCells:
 
 
 def proposed_across(along: float, rest: float, x: FloatArray, stiff: FloatArray, pull: FloatArray, eta: float) -> float:
-    """Return a β that matches an α, proposed in floating point at points x, with slack for the proof."""
+    """Return a lower bound β of a pair's transverse curvature for a given axial bound α, unproved."""
     distance, unit = rest + x, max(float(np.abs(stiff).max()), abs(along))
     maximum = np.maximum((eta**2 - x**2) / (2.0 * distance * rest), 0.0)
     d1 = 2.0 * x * (stiff * rest + along * distance) + 2.0 * pull * rest**2
@@ -109,7 +109,7 @@ def proposed_across(along: float, rest: float, x: FloatArray, stiff: FloatArray,
 
 
 def points(reach: float) -> FloatArray:
-    """Return bond displacements for floating-point proposals: the shells' ends, denser near 0."""
+    """Return sample points of the length change of a pair, with the ends of all shells, denser near 0."""
     inner = np.linspace(-1.0, 1.0, _POINTS) ** 3
     shell_edges = np.arange(-SHELLS, SHELLS + 1) / SHELLS
     return reach * np.unique(np.concatenate([inner, shell_edges]))
@@ -117,7 +117,7 @@ def points(reach: float) -> FloatArray:
 
 @dataclass(frozen=True)
 class Bond:
-    """Bond: pairs of agents of nearly equal length that are or may come in range."""
+    """Group of pairs of agents of nearly equal length that are or may come in range."""
 
     pairs: tuple[tuple[int, int], ...]
     rest: arb
@@ -125,7 +125,7 @@ class Bond:
 
 @dataclass(frozen=True)
 class ProposedBounds:
-    """Bounds proposed in floating point for a radius: α and β of each bond in each shell, and curvatures."""
+    """Unproved floating-point bounds of the curvatures of pairs and flock in each shell of a radius."""
 
     radius: float
     along: FloatArray
@@ -134,12 +134,12 @@ class ProposedBounds:
 
     @property
     def mean(self) -> float:
-        """Return the least mean curvature over the first shells."""
+        """Return the least of the mean curvatures over the first 1, 2, … shells."""
         return float(np.min(np.cumsum(self.curvatures) / np.arange(1, SHELLS + 1)))
 
 
 class BondTable:
-    """Bonds around an enclosed equilibrium, and the matrices of their bounds."""
+    """Pairs about an enclosed equilibrium, grouped by length, and matrices of their curvature bounds."""
 
     def __init__(self, law: Any, u: Structure, rest: Balls) -> None:
         self.law, self.u, self.rest = law, u, rest
@@ -179,14 +179,14 @@ class BondTable:
         return self.u.assembled(blocks) + self.lifts
 
     def curvature(self, bonds: Sequence[Bond], along: Sequence[Any], across: Sequence[Any]) -> arb:
-        """Return a lower bound of ⟨w, M w⟩/‖w‖² over all w orthogonal to the rigid motions."""
+        """Return a lower bound of ⟨w, M w⟩/‖w‖² for the matrix M of given bounds, w ⊥ rigid motions."""
         total = self.matrix(bonds, along, across)
         shift = 2 * max(sum(map(abs, row), arb(0)).upper() for row in (total - self.lifts).tolist())
         eigenvalue = least_eigenvalue(total + identity(total.nrows()) * shift)
         return arb("-inf") if eigenvalue is None else (eigenvalue - shift).lower()
 
     def proposed(self, radius: float) -> ProposedBounds:
-        """Return bounds for a radius, proposed in floating point with the best slack in each shell."""
+        """Return curvature bounds for all shells of a radius, found in floating point and not yet proved."""
         reach = float(ROOT_TWO.p) / float(ROOT_TWO.q) * radius
         bonds = self.bonds(fmpq(*reach.as_integer_ratio()))
         x = points(reach)
@@ -210,14 +210,14 @@ class BondTable:
         return ProposedBounds(radius, along, across, curvatures)
 
     def _curves(self, length: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the curvature F'' and the tension T of a bond at its displacements, in floating point."""
+        """Return the stiffness F'' and the tension F'/ℓ of a pair at given lengths, in floating point."""
         alpha, gain = self.law.alpha, self.law.gains.c1_alpha
         root, z = np.sqrt(1.0 + alpha.eps * length**2), alpha.sigma_norm(length)
         action = alpha.phi_alpha(z)
         return gain * (alpha.phi_alpha_slope(z) * (length / root) ** 2 + action / root**3), gain * action / root
 
     def _parts(self, bonds: Sequence[Bond]) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the coefficient matrices of α and β of each bond, and the constant matrix, in floating point."""
+        """Return the coefficient matrices of each bond's α and β, and the constant matrix, off rigid motions."""
         dimension, m = len(self.rest), self.u.m
         motions = np.array([[float(y) for y in g] for g in self.u.rotation_tangents(self.rest) + self.u.translations()])
         basis = np.linalg.svd(motions, full_matrices=True)[2][len(motions) :]
@@ -235,7 +235,7 @@ class BondTable:
 
 @dataclass(frozen=True)
 class Shells:
-    """Proved lower bounds k_i of the curvature in the shells of a radius.
+    """Proved lower bounds k_i of the radial curvature of U in shells about an equilibrium's orbit.
 
     `along` and `across` hold, shell by shell, the α and β of every bond that the k_i were proved with.
     """
@@ -248,13 +248,13 @@ class Shells:
 
     @property
     def slopes(self) -> tuple[fmpq, ...]:
-        """Slopes G'(t_i) of the energy bound G at the shells' ends."""
+        """Slopes G'(t_i) of the lower bound G of the energy at the outer radii t_i of the shells."""
         step, total = self.radius / SHELLS, fmpq(0)
         return tuple(total := total + k * step for k in self.curvatures)
 
     @property
     def level(self) -> fmpq:
-        """Least energy above the equilibrium's on the sphere of the radius ρ: the bound G(ρ)."""
+        """Lower bound G(ρ) of U − U* on the sphere of the outermost shell's radius ρ."""
         step, slopes = self.radius / SHELLS, (fmpq(0), *self.slopes)
         return sum(((a + b) * step / 2 for a, b in pairwise(slopes)), fmpq(0))
 
@@ -275,7 +275,7 @@ class Shells:
 
 
 def prove(around: BondTable, floors: ProposedBounds) -> Shells | None:
-    """Return proposed bounds, rounded down and proved; None where a bound is not certain."""
+    """Return proved curvature bounds from rounded-down proposals; None if one of them is not certain."""
     radius = round_down(arb(floors.radius), _DIGITS)
     reach = ROOT_TWO * radius
     bonds = around.bonds(reach)

@@ -48,7 +48,7 @@ def round_up(x: arb | fmpq, digits: int) -> fmpq:
 
 
 def fraction(x: fmpq) -> Fraction:
-    """Return a rational of Arb as one of Python."""
+    """Return a rational number of Arb (fmpq) as a Fraction of Python."""
     return Fraction(int(x.p), int(x.q))
 
 

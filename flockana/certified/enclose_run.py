@@ -119,7 +119,7 @@ def enclose(
 def _collected(
     march: _March, start: StateSet, span: tuple[float, float], most: int, progress: bool
 ) -> tuple[tuple[float, ...], tuple[StateSet, ...], tuple[Step, ...], str, str]:
-    """Return times, sets and steps until the run ends or a proof fails, with a status and a message."""
+    """Return times, state sets and steps until the run ends or a proof fails, with status and message."""
     times, sets, taken_steps = [span[0]], [start], list[Step]()
     status, message = "broken", f"it took {most} steps, as many as it may"
     with progress_bar(span[1] - span[0], enabled=progress, counted=False, steady=True) as advance:
@@ -144,7 +144,7 @@ def _collected(
 
 @dataclass(frozen=True)
 class _March:
-    """How `enclose` goes through time: the flow, its length scale, and bounds of its steps."""
+    """Step-by-step rigorous integrator of `enclose`: right-hand side, length scale, and error limits."""
 
     flow: Flow
     length: float
@@ -153,7 +153,7 @@ class _March:
     widest: float
 
     def steps(self, start: StateSet, span: tuple[float, float]) -> Iterator[tuple[float, Step | str]]:
-        """Yield each proved step with its final set; yield a message where a proof fails."""
+        """Yield the end time and enclosure of each proved step, or a message where a proof fails."""
         flow, t, current_set, target_step = self.flow, span[0], start, 0.1 / self.flow.pace
         while t < span[1]:
             end, step, is_crossing = self._step(t, current_set, min(target_step, span[1] - t), span[1])
@@ -171,7 +171,7 @@ class _March:
             yield t, step
 
     def _step(self, t: float, current: StateSet, most: float, last: float) -> tuple[float, Step | None, bool]:
-        """Return the end of the next step, the step if a proof succeeds, and whether a switch is crossed."""
+        """Return the end time of the next step, its enclosure (or None), and whether it may cross a switch."""
         flow, shortest, end = self.flow, _SHORTEST / self.flow.pace, t
         step: Step | None = None
         duration, is_crossing = _proposed(flow, current, most)
@@ -192,21 +192,21 @@ class _March:
         return end, step, is_crossing
 
     def _width(self, step: Step) -> float:
-        """Return the largest half-width of the set after a step."""
+        """Return the largest half-width of the enclosed state set after a step."""
         return size(self.flow, [arb(x.rad()) for x in step.after.hull])
 
     def _excess(self, step: Step) -> float:
-        """Return the ratio of a step's remainder to the allowed remainder."""
+        """Return the ratio of a step's Taylor remainder to the allowed remainder."""
         return step.added / max(self.remainder * self.length, _PART * self._width(step))
 
 
 def _factor(excess: float, order: int) -> float:
-    """Return the factor by which to lengthen the next step, from the order of the remainder."""
+    """Return the factor by which to scale the next step, from the excess and order of the error."""
     return float(0.9 * excess ** (-1.0 / order)) if excess > 0.0 else inf
 
 
 def _proposed(flow: Flow, current: StateSet, longest: float) -> tuple[float, bool]:
-    """Return the length of the next step, proposed in floating point, and whether it crosses a switch."""
+    """Return a proposed length of the next time step, and whether the step may cross a switching distance."""
     state = np.array([[float(x.mid()), float(x.rad())] for x in current.hull])
     (q, p), radii = state[:, 0].reshape(2, flow.n, flow.m), state[:, 1].reshape(2, -1)
     wide, velocity_width = (2.0 * sqrt(flow.m) * float(half_vector.max()) for half_vector in radii)
@@ -225,7 +225,7 @@ def _proposed(flow: Flow, current: StateSet, longest: float) -> tuple[float, boo
 
 
 def _gaps(flow: Flow, q: Any, p: Any) -> Iterator[tuple[float, float]]:
-    """Yield the distance of each pair and agent from a switch, and the rate at which it grows."""
+    """Yield how far each pair's distance is from a switch of its law, with its rate; likewise for agents."""
     switches = flow.pair.switches
     for i, j in combinations(range(flow.n), 2):
         displacement, relative = q[j] - q[i], p[j] - p[i]
@@ -238,7 +238,7 @@ def _gaps(flow: Flow, q: Any, p: Any) -> Iterator[tuple[float, float]]:
 
 
 def _where(flow: Flow, current: StateSet) -> str:
-    """Return a sentence naming the pairs and agents near a switching distance."""
+    """Return a phrase on the width of a state set and the pairs near a switching distance, for messages."""
     names = [f"agents {i} and {j}" for i, j in combinations(range(flow.n), 2)]
     names += [f"agent {i} and an obstacle" for _ in flow.terms for i in range(flow.n)]
     switch_names = [name for name, piece in zip(names, flow.pieces(current.hull), strict=True) if piece is Piece.SWITCH]

@@ -25,7 +25,7 @@ _COLLINEAR = 1e-9
 
 
 def enclose_rest(u: Structure, q: FloatArray) -> tuple[list[float], list[arb]]:
-    """Return the computed equilibrium next to q, and balls that hold the true one of the same orientation."""
+    """Return the equilibrium computed from positions q, and balls that certainly contain the exact one."""
     singular_values = np.linalg.svd(q - q.mean(axis=0), compute_uv=False)
     if u.m == 3 and singular_values[1] <= _COLLINEAR * singular_values[0]:  # its orbit is a sphere
         raise ArgumentError("the agents lie on one line in space: expected a net off a line; certify it in m = 1")
@@ -43,7 +43,7 @@ def enclose_rest(u: Structure, q: FloatArray) -> tuple[list[float], list[arb]]:
 
 
 def system(u: Structure, x: Sequence[float]) -> tuple[Callable[[Balls], list[arb]], Callable[[Balls], arb_mat]]:
-    """Return the equations of an equilibrium in (x, μ, ν) near a computed x̄, and their Jacobian."""
+    """Return the equilibrium equations with multipliers for fixed rigid motions, and their Jacobian."""
     centre, size = [arb(y) for y in x], len(x)
     motions, shifts = u.rotation_tangents(centre), u.translations()
     fixed = motions + shifts
@@ -63,18 +63,18 @@ def system(u: Structure, x: Sequence[float]) -> tuple[Callable[[Balls], list[arb
 
 
 def _multipliers(u: Structure) -> list[arb]:
-    """Return multipliers μ and ν that are 0, one for each rotation and each translation."""
+    """Return initial Lagrange multipliers, all 0: one for each rotation and each translation."""
     return [arb(0)] * (u.m * (u.m + 1) // 2)
 
 
 def regular(u: Structure, x: Sequence[float], radius: arb) -> bool:
-    """Return whether the condition that fixes rotations is regular in the whole box: no other rotation satisfies it."""
+    """Return whether the equations that fix the rotations are certainly independent on a whole box."""
     fixed, moving = u.rotation_tangents([arb(y) for y in x]), u.rotation_tangents([arb(y, radius) for y in x])
     return not fixed or bool(arb_mat([[dot(a, b) for b in fixed] for a in moving]).det() != 0)
 
 
 def _refined(u: Structure, q: FloatArray) -> list[float]:
-    """Return a refined and centred equilibrium by Newton's method from q: forces in balls, slopes in floating point."""
+    """Return the centred equilibrium that Newton's method finds from positions q."""
     start = (q - q.mean(axis=0)).ravel()
     x, d = start.copy(), float(u.par.d.p) / float(u.par.d.q)
     for _ in range(_NEWTON):
@@ -90,7 +90,7 @@ def _refined(u: Structure, q: FloatArray) -> list[float]:
 
 
 def unique_projection(u: Structure, rest: Balls, radius: fmpq) -> bool:
-    """Return whether the nearest point of the orbit is certainly unique, and not degenerate, up to the radius."""
+    """Return whether each state within the radius certainly has one nearest point on the orbit."""
     if u.m == 1:
         return True
     rest_square = dot(rest, rest)
@@ -102,7 +102,7 @@ def unique_projection(u: Structure, rest: Balls, radius: fmpq) -> bool:
 
 
 def centred(name: str, values: Any, shape: tuple[int, int]) -> list[arb]:
-    """Return a list of balls whose sum over the agents is 0."""
+    """Return coordinates relative to the mean over the agents, as balls."""
     rows = [[arb(x) if isinstance(x, arb) else arb(float(x)) for x in row] for row in values]
     if len(rows) != shape[0] or any(len(row) != shape[1] for row in rows):
         raise ArgumentError(f"{name} has shape {np.shape(values)}: expected {shape}, as the equilibrium has")
@@ -113,14 +113,14 @@ def centred(name: str, values: Any, shape: tuple[int, int]) -> list[arb]:
 
 
 def rotated_to(rest: Balls, x: Balls, shape: tuple[int, int]) -> list[arb]:
-    """Return the equilibrium rotated to nearly the best alignment, exact up to the enclosure."""
+    """Return the equilibrium rotated to nearly the best alignment with given positions, as balls."""
     rotation = _rotation(*(np.array([float(y) for y in z]).reshape(shape) for z in (rest, x)))
     m = shape[1]
     return [dot(row, rest[i : i + m]) for i in range(0, len(rest), m) for row in rotation]
 
 
 def _rotation(rest: FloatArray, x: FloatArray) -> list[list[arb]]:
-    """Return balls that hold a rotation matrix near that of a singular value decomposition."""
+    """Return balls of a rotation matrix that nearly aligns the equilibrium with given positions."""
     m = rest.shape[1]
     if m == 1:
         return [[arb(1)]]

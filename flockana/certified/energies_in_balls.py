@@ -36,13 +36,13 @@ def total_energy(law: Any, q: Vectors, p: Vectors) -> arb:
 
 
 def powers_during(tube: Tube, flow: Flow, k: int) -> list[arb]:
-    """Return the parts of dH/dt (`Flow.powers`) as balls valid from step k to the next."""
+    """Return the summands of dH/dt (pair damping, single-agent forces) during step k of a tube, as balls."""
     box = tube.taken[k].during
     return flow.powers(box, flow.pieces(box))
 
 
 def work(tube: Tube) -> arb:
-    """Return a ball around the integral of dH/dt over the tube, from the closed form of the rate."""
+    """Return a ball around the integral of dH/dt over the whole time span of an enclosed run."""
     # On a step where every pair and agent is on one piece, the rate's Taylor polynomial is integrated, with its last
     # coefficient taken over all states of the step; elsewhere the step's length times the rate's range.
     with ctx.workprec(BITS):

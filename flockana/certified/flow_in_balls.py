@@ -41,7 +41,7 @@ class Flow:
     terms: tuple[AgentTerm, ...] = ()  # What acts on each agent by itself: the γ-agent, obstacles
 
     def pieces(self, state: Sequence[arb]) -> Pieces:
-        """Return the piece of the law on which each pair and each agent lies, for every state of a box."""
+        """Return the smooth piece of each pair's and agent's force law that holds on a box of states."""
         q = self.split(state)[0]
         pairs = [self.pair.piece(norm2(minus(q[i], q[j]))) for i, j in combinations(range(self.n), 2)]
         return (*pairs, *(term.piece(x) for term in self.terms for x in q))
@@ -52,7 +52,7 @@ class Flow:
         return [state[k : k + m] for k in range(0, half, m)], [state[k : k + m] for k in range(half, 2 * half, m)]
 
     def input(self, t: Any, state: Sequence[Any], pieces: Pieces) -> list[Any]:
-        """Return u(t, q, p), coordinate by coordinate."""
+        """Return the accelerations u(t, q, p) of all agents, coordinate by coordinate."""
         (q, p), m = self.split(state), self.m
         u: list[list[Any]] = [[0 * q[0][0]] * m for _ in range(self.n)]
         for i, j, piece, displacement, relative in self._pairs(q, p, pieces):
@@ -66,7 +66,7 @@ class Flow:
         return [x for agent in u for x in agent]
 
     def powers(self, state: Sequence[Any], pieces: Pieces) -> list[Any]:
-        """Return the parts of dH/dt: −c2α Σ a_ij ‖p_j − p_i‖² of all pairs, then the power of each term."""
+        """Return the summands of dH/dt: −c2α Σ a_ij ‖p_j − p_i‖² and those of γ-agent and obstacles."""
         q, p = self.split(state)
         heat, powers = 0 * q[0][0], [0 * q[0][0] for _ in self.terms]
         for _, _, piece, displacement, relative in self._pairs(q, p, pieces):
@@ -79,7 +79,7 @@ class Flow:
         return [-self.damping * heat, *powers]
 
     def slopes(self, t: Any, state: Sequence[Any], pieces: Pieces) -> tuple[list[list[Any]], list[list[Any]]]:
-        """Return the derivatives (∂u/∂q, ∂u/∂p) as square tables; entries without dependence are the number 0."""
+        """Return the Jacobians (∂u/∂q, ∂u/∂p) of the accelerations as two square tables."""
         (q, p), m, size = self.split(state), self.m, self.n * self.m
         by_q, by_p = ([[0] * size for _ in range(size)] for _ in range(2))
         for i, j, piece, displacement, relative in self._pairs(q, p, pieces):
@@ -100,18 +100,18 @@ class Flow:
         return by_q, by_p
 
     def _pairs(self, q: Any, p: Any, pieces: Pieces) -> Iterator[tuple[int, int, Piece, list[Any], list[Any]]]:
-        """Return the pairs in range with their pieces, relative positions and velocities."""
+        """Return (i, j, smooth piece, q_j − q_i, p_j − p_i) of every pair of agents in range."""
         pairs = zip(combinations(range(self.n), 2), pieces, strict=False)
         near_pairs = ((i, j, piece) for (i, j), piece in pairs if piece is not Piece.OUT)
         return ((i, j, piece, minus(q[j], q[i]), minus(p[j], p[i])) for i, j, piece in near_pairs)
 
     def _agents(self, pieces: Pieces) -> Iterator[tuple[int, int, Piece]]:
-        """Return (number of the term, agent, piece) for all agents on which terms of single agents act."""
+        """Return (index of the force, agent, smooth piece) wherever γ-agent or obstacles act on an agent."""
         agent_pieces = enumerate(pieces[self.n * (self.n - 1) // 2 :])
         return ((*divmod(k, self.n), piece) for k, piece in agent_pieces if piece is not Piece.OUT)
 
     def taylor(self, t: arb, state: Sequence[arb], order: int, pieces: Pieces) -> list[list[arb]]:
-        """Return Taylor coefficients 0 to `order` of the solutions from a box, at a ball of times."""
+        """Return Taylor coefficients in time, up to `order`, of all solutions from a box of states."""
         half_dimension = self.n * self.m
         path = [[x] for x in state]
         for k in range(order):
@@ -124,7 +124,7 @@ class Flow:
         return path
 
     def variation(self, t: arb, path: Sequence[Sequence[arb]], order: int, pieces: Pieces) -> list[arb_mat]:
-        """Return Taylor coefficients 0 to `order` of ∂x(t + s)/∂x(t) along a path."""
+        """Return Taylor coefficients, up to `order`, of the state transition matrix ∂x(t + s)/∂x(t)."""
         half_dimension = self.n * self.m
         with series_length(order):
             series = [arb_series(coefficients[:order]) for coefficients in path]
@@ -141,17 +141,17 @@ class Flow:
         return [arb_mat(a.tolist() + b.tolist()) for a, b in zip(upper, lower, strict=True)]
 
     def rate(self, t: arb, state: Sequence[arb], pieces: Pieces) -> list[arb]:
-        """Return the rate x' = (p, u) on a box that may lie on several pieces."""
+        """Return the time derivative x' = (p, u) of the state on a box, across switching distances too."""
         return [*state[self.n * self.m :], *self.input(t, state, pieces)]
 
     def jacobian(self, t: arb, state: Sequence[arb], pieces: Pieces) -> arb_mat:
-        """Return the derivative ∂(p, u)/∂(q, p) on a box that may lie on several pieces."""
+        """Return the Jacobian ∂(p, u)/∂(q, p) of the equations of motion on a box of states."""
         half = self.n * self.m
         by_q, by_p = self.slopes(t, state, pieces)
         return arb_mat(identity(2 * half).tolist()[half:] + [[*a, *b] for a, b in zip(by_q, by_p, strict=True)])
 
     def acceleration(self, t: arb, state: Sequence[arb], pieces: Pieces) -> list[arb]:
-        """Return the second derivative x'' in time on a box that may lie on several pieces."""
+        """Return the second time derivative x'' of the state x = (q, p) on a box of states."""
         along = (self.jacobian(t, state, pieces) * column(self.rate(t, state, pieces))).entries()
         for term in self.terms:
             drift = [a for x in self.split(state)[0] for a in term.drift(t, x)]
@@ -160,7 +160,7 @@ class Flow:
 
 
 def _couple(table: list[list[Any]], m: int, i: int, j: int, k: int, h: int, value: Any) -> None:
-    """Add to a table the derivative of agent i's coordinate k by coordinate h of x_j − x_i, and its reaction on j."""
+    """Add a pair's derivative by one coordinate of x_j − x_i to a Jacobian, with its reaction on j."""
     for row, partner, sign in ((i, j, 1), (j, i, 1), (i, i, -1), (j, j, -1)):
         table[row * m + k][partner * m + h] += value if sign > 0 else -value
 
@@ -188,7 +188,7 @@ def ensure_enclosable(law: Any) -> None:
 
 
 def flow_of(law: Any, n: int, m: int, *, number: Callable[[Any], fmpq] = exact) -> Flow:
-    """Return a law for n agents in m dimensions as a right-hand side in balls; by default with exact decimals."""
+    """Return the right-hand side, in ball arithmetic, of a law for n agents in m dimensions."""
     gains, alpha, target = law.gains, law.alpha, law.target
     terms: tuple[AgentTerm, ...] = ()
     rates = [gains.c2_alpha * min(n, 6), sqrt(gains.c1_alpha * n)]
@@ -207,7 +207,7 @@ def flow_of(law: Any, n: int, m: int, *, number: Callable[[Any], fmpq] = exact) 
 
 
 def sphere_terms(law: Any, number: Callable[[Any], fmpq] = exact) -> tuple[SphereTerm, ...]:
-    """Return the terms of a law's obstacles at the present precision."""
+    """Return the forces of a law's spherical obstacles, in balls of the current precision."""
     gains: Any = law.gains
     beta, pull, drag = PairNumbers.of_beta(law.beta, number), arb(number(gains.c1_beta)), arb(number(gains.c2_beta))
     sphere_places = [(tuple(arb(number(y)) for y in one.centre), arb(number(one.radius))) for one in law.obstacles]

@@ -39,7 +39,7 @@ def phi(s: Any, a: Any, b: Any, c: Any) -> Any:
 
 
 def pair(s2: Any, law: Any, piece: Any) -> Any:
-    """(weight, adjacency) at squared distance s2."""
+    """Force weight and adjacency of a pair at squared distance s2."""
     x0 = sigma_norm(s2, law.eps)
     x1 = phi((-law.zero + x0)/law.area, law.a, law.b, law.c)
     x2 = place(x0/law.cutoff, law.h, piece)

@@ -55,7 +55,7 @@ class GainBox(ShortRepr):
 
 
 def gain_box(law: Algorithm2, q: Any, spread: float) -> GainBox:
-    """Decide whether an equilibrium stays stable if each gain, agent by agent, deviates by up to a share.
+    """Decide whether an equilibrium stays stable if every gain of every agent deviates by up to a fraction.
 
     Proved in ball arithmetic, for the law as it is: for all c1α, c2α and all c1γ, c2γ of the agents in the box, there
     is exactly one equilibrium near that of the nominal gains but for rotations about the γ-agent, it depends on them

@@ -37,7 +37,7 @@ class StateSet:
 
     @classmethod
     def box(cls, centre: Sequence[arb], radius: Sequence[arb]) -> StateSet:
-        """Return the set of all states in a box."""
+        """Return the set of all states within given radii of a centre, in Lohner's form."""
         midpoint = tuple(x.mid() for x in centre)
         spread = tuple(x - y + arb(0, r.upper()) for x, y, r in zip(centre, midpoint, radius, strict=True))
         dimension = len(midpoint)
@@ -45,13 +45,13 @@ class StateSet:
 
     @property
     def hull(self) -> list[arb]:
-        """Return the smallest box around the set, in the coordinates of the state."""
+        """Return the smallest box that contains the set of states."""
         spread = (self.c * column(self.start) + self.b * column(self.error)).entries()
         return [x + y for x, y in zip(self.centre, spread, strict=True)]
 
 
 class Step(NamedTuple):
-    """Proved enclosures of one step."""
+    """Proved enclosures of one integration step: states at its end and during it, with error sizes."""
 
     after: StateSet  # Holds the states at its end
     during: list[arb]  # Box that holds them from its begin to its end
@@ -67,7 +67,7 @@ def variation_order(order: int) -> int:
 
 
 def taylor_step(flow: Flow, t: arb, h: arb, before: StateSet, order: int) -> Step | None:
-    """Return a Taylor step; None if the step is too long, or a pair may change its piece."""
+    """Return the enclosure of a Taylor step; None if too long, or a pair may cross a switching distance."""
     span, box = hull(arb(0), h), before.hull
     if Piece.SWITCH in (pieces := flow.pieces(box)):
         return None
@@ -200,7 +200,7 @@ def _frame(b: arb_mat, widths: Sequence[float], pace: float) -> arb_mat:
 
 
 def _seen(flow: Flow, combined: Callable[[Mapping[int, Any]], arb]) -> tuple[list[list[arb]], list[list[arb]]]:
-    """Return q_j − q_i of each pair and q_i − q_c of each agent during a step."""
+    """Return the relative positions q_j − q_i and deviations q_i − q_c of all agents during a step."""
     n, m, share = flow.n, flow.m, arb(1) / flow.n
     relative = [[combined({j * m + k: 1, i * m + k: -1}) for k in range(m)] for i, j in combinations(range(n), 2)]
     deviations = [[combined({j * m + k: int(i == j) - share for j in range(n)}) for k in range(m)] for i in range(n)]
@@ -215,7 +215,7 @@ def _combined(weights: Mapping[int, Any], path: Sequence[Sequence[arb]], tail: S
 
 
 def size(flow: Flow, remainder: Sequence[arb]) -> float:
-    """Return the largest coordinate of a box, velocities times the law's time; for step control only."""
+    """Return the largest entry of a box of states, velocities times the law's time; for step control."""
     half = len(remainder) // 2
     far, fast = (max(float(x.abs_upper()) for x in half_vector) for half_vector in (remainder[:half], remainder[half:]))
     return max(far, fast / flow.pace)

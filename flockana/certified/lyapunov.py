@@ -85,7 +85,7 @@ def _second_eigenvalue(n: int, weights: Mapping[tuple[int, int], arb]) -> arb | 
 
 
 def rate_of(bounds: Bounds, eps: fmpq, theta: fmpq, kappa: fmpq, tau: fmpq) -> fmpq:
-    """Return the largest exact rate α that the inequalities allow; 0 if there is none above 0."""
+    """Return the largest decay rate α that the Lyapunov inequalities allow for given parameters; or 0."""
     curvature, lowest_value, maximum = bounds.curvature, bounds.least, bounds.most
     mixed_curvature = theta * bounds.surplus + (1 - theta) * curvature
     places = eps * (theta * curvature / 2 + mixed_curvature - kappa * maximum / 2) / (curvature / 2 + eps * tau / 2)
@@ -113,7 +113,7 @@ def decay(bounds: Bounds) -> Decay:
 
 
 def _others(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the best θ, κ and τ for given ε and α; κ and τ are not positive if α is too large."""
+    """Return the best Lyapunov parameters θ, κ and τ for given ε and α; κ, τ <= 0 if α is too large."""
     curvature, surplus, lowest, maximum = map(float, (bounds.curvature, bounds.surplus, bounds.least, bounds.most))
     theta = np.ones_like(eps) if surplus >= 0.5 * curvature else alpha / eps
     margin = curvature + theta * (surplus - 0.5 * curvature) - 0.5 * alpha * curvature / eps
@@ -122,7 +122,7 @@ def _others(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> tuple[FloatAr
 
 
 def _left(bounds: Bounds, eps: FloatArray, alpha: FloatArray) -> FloatArray:
-    """Return the slack of the speeds' inequality; negative if the inequality fails."""
+    """Return the slack of the Lyapunov inequality in the velocities; negative if the inequality fails."""
     _, kappa, tau = _others(bounds, eps, alpha)
     lowest_value, is_sound = float(bounds.least), tau > 0.0
     cost = 1.0 + 0.5 * lowest_value / np.where(is_sound, kappa, 1.0) + 0.5 * alpha / np.where(is_sound, tau, 1.0)

@@ -56,7 +56,7 @@ def has_ball_orbit(law: Any) -> bool:
 def enclose_orbit(
     law: Any, t0: float, q0: FloatArray, p0: FloatArray, wanted: Sequence[int], *, budget: float = BUDGET
 ) -> BallOrbit:
-    """Enclose the exact orbit of a scheme at selected steps; at least the rows before `known` are narrow.
+    """Enclose the exact orbit of a numerical integration scheme at selected steps, in ball arithmetic.
 
     The law's parameters, unlike those of a tube, are their binary values; `budget` counts pairs, at 128 bits.
     """
@@ -72,7 +72,7 @@ def enclose_orbit(
 def _pass(
     law: Any, t0: float, start: tuple[FloatArray, FloatArray], wanted: Sequence[int], left: float
 ) -> tuple[BallOrbit, float]:
-    """Return the orbit at the current precision up to the first wide ball or the budget's end, and the budget left."""
+    """Return the orbit in balls until one is too wide or the budget ends, and the budget left."""
     n, m = start[0].shape
     flow, begin = flow_of(law.law, n, m, number=_binary), left + 0.0
     h, half_dimension, t, evaluations = arb(law.dt), n * m, arb(t0), len(law.solver.b)
@@ -99,7 +99,7 @@ def _pass(
 
 
 def _step(flow: Flow, law: Any, t: arb, h: arb, state: Sequence[arb]) -> tuple[list[arb], int]:
-    """Return the state after one step of the method, and how many pairs were evaluated."""
+    """Return the state after one step of the integration method, and the number of pairs evaluated."""
     half, slopes, count, solver = flow.n * flow.m, list[list[arb]](), 0, law.solver
     for row, s in zip(solver.a, (sum(row) for row in solver.a), strict=True):
         moved_state = _moved(state, h, row, slopes)
@@ -114,13 +114,13 @@ def _step(flow: Flow, law: Any, t: arb, h: arb, state: Sequence[arb]) -> tuple[l
 
 
 def _moved(state: Sequence[arb], h: arb, weights: Sequence[float], slopes: list[list[arb]]) -> list[arb]:
-    """Return the stage's state y + h Σ_j w_j K_j."""
+    """Return the intermediate state y + h Σ_j w_j K_j of a Runge-Kutta stage."""
     slopes_used = [(h * arb(w), slope) for w, slope in zip(weights, slopes, strict=False) if w]
     return [sum((w * slope[k] for w, slope in slopes_used), x) for k, x in enumerate(state)]
 
 
 def _pieces(flow: Flow, state: Sequence[arb], r: float) -> tuple[Pieces, int]:
-    """Return the piece of each pair and agent, and the number of pairs that may be in range."""
+    """Return the smooth piece of every pair and agent, and the number of pairs that may be in range."""
     positions = state[: flow.n * flow.m]
     x = np.array([float(y.mid()) for y in positions]).reshape(flow.n, flow.m)
     position_radius = max(float(y.rad()) for y in positions)

@@ -22,7 +22,7 @@ from flockana.certified.balls import exact, hull, integrate, monotone
 
 @dataclass(frozen=True)
 class PairNumbers:
-    """Numbers of a pair law as balls at one precision.
+    """Constants of a pair law (σ-norm, bump function, action φ) as balls at one precision.
 
     The β-pair's action is the α-pair's with φ(s) = σ₁(s) − 1, which is φ of a = 0, b = 2 and c = 0.
     """
@@ -38,7 +38,7 @@ class PairNumbers:
 
     @classmethod
     def of_alpha(cls, alpha: Any, number: Callable[[Any], fmpq] = exact) -> PairNumbers:
-        """Return the numbers of an `AlphaInteraction`, or of exact parameters with ℓ = 1, by default as decimals."""
+        """Return the constants of an `AlphaInteraction`, or of exact parameters, as balls."""
         eps, h, a, b, d, r = (arb(number(getattr(alpha, name))) for name in ("eps", "h", "a", "b", "d", "r"))
         zero, cutoff = (formula_in_balls.sigma_norm(x * x, eps) for x in (d, r))
         return cls(
@@ -47,7 +47,7 @@ class PairNumbers:
 
     @classmethod
     def of_beta(cls, beta: Any, number: Callable[[Any], fmpq] = exact) -> PairNumbers:
-        """Return the pair numbers of a `BetaInteraction`, by default as decimals."""
+        """Return the constants of a `BetaInteraction` as balls."""
         eps, h, d, unit = (arb(number(getattr(beta, name))) for name in ("eps", "h", "d", "unit"))
         cutoff = formula_in_balls.sigma_norm(d * d, eps)
         return cls(eps, h, arb(0), arb(2), arb(0), cutoff, cutoff, unit**2)
@@ -59,12 +59,12 @@ class PairNumbers:
 
     @property
     def switches(self) -> list[float]:
-        """Switching distances between the pieces of the law, in floating point."""
+        """Distances at which the pair law passes from one smooth piece to the next, in floating point."""
         eps = float(self.eps)
         return [sqrt(((1.0 + eps * float(z)) ** 2 - 1.0) / eps) for z in (self.knee, self.cutoff)]
 
     def piece(self, s2: arb) -> Piece:
-        """Return the piece on which every squared distance in a ball lies."""
+        """Return the smooth piece of the pair law that holds for all squared distances in a ball."""
         z = formula_in_balls.sigma_norm(s2.nonnegative_part(), self.eps)
         if z > self.cutoff:
             return Piece.OUT
@@ -73,11 +73,11 @@ class PairNumbers:
         return Piece.TAPER if z > self.knee and z < self.cutoff else Piece.SWITCH
 
     def pair(self, s2: Any, piece: Piece = Piece.SWITCH) -> tuple[Any, Any]:
-        """Return (weight, adjacency) at a squared distance: a ball on any pieces, or a series on one in range."""
+        """Return a pair's weight of q_j − q_i in the force and its adjacency a_ij, at a squared distance."""
         return formula_in_balls.pair(_nonnegative(s2), self, piece)
 
     def slopes(self, s2: Any, piece: Piece = Piece.SWITCH) -> tuple[Any, Any]:
-        """Return the derivatives of `pair` by s², which are continuous across a switch."""
+        """Return the derivatives of a pair's force weight and adjacency by the squared distance."""
         return formula_in_balls.slopes(_nonnegative(s2), self, piece)
 
     def stiffness(self, s2: arb) -> arb:
@@ -85,7 +85,7 @@ class PairNumbers:
         return formula_in_balls.stiffness(_nonnegative(s2), self, Piece.SWITCH)
 
     def potential(self, s2: arb) -> arb:
-        """Return ψ at a squared distance: decreasing to its zero, increasing to the cutoff, constant beyond."""
+        """Return the pair potential ψ at a squared distance; it is constant beyond the cutoff."""
         z = formula_in_balls.sigma_norm(s2.nonnegative_part(), self.eps)
         if z <= self.zero or z >= self.zero:
             return monotone(self._potential, z)
@@ -102,11 +102,11 @@ class PairNumbers:
         return self._potential(arb(0))
 
     def _potential(self, z: arb) -> arb:
-        """Return the potential ψ at one squared distance."""
+        """Return the pair potential ψ at one σ-norm of the distance."""
         return self.far if z >= self.cutoff else self._from_knee(z) - self._from_knee(self.zero)
 
     def _from_knee(self, z: arb) -> arb:
-        """Return the integral of the action from the knee: closed form before it, enclosed by Arb after it."""
+        """Return the integral of the pair action from the σ-norm at which the bump begins to fall."""
         knee = self.knee
         inner_part = (
             arb(0) if z >= knee else formula_in_balls.closed(z.min(knee), self) - formula_in_balls.closed(knee, self)

@@ -25,12 +25,12 @@ def sigma_norm(x: arb, eps: Any) -> arb:
 
 
 def sigma_1(s: arb) -> arb:
-    """Return s/√(1 + s²), increasing."""
+    """Return σ₁(s) = s/√(1 + s²), an increasing function."""
     return monotone(lambda s: s * (1 + square(s)).rsqrt(), ball(s))
 
 
 def sigma_1_slope(s: arb) -> arb:
-    """Return (1 + s²)^(−3/2)."""
+    """Return the derivative of σ₁(s), which is (1 + s²)^(−3/2)."""
     root = (1 + square(ball(s))).rsqrt()
     return root * root * root
 
@@ -57,22 +57,22 @@ def phi(s: arb, a: Any, b: Any) -> arb:
 
 
 def d_alpha(par: AlphaParameters) -> arb:
-    """Return ‖d‖_σ."""
+    """Return d_α = ‖d‖_σ, the σ-norm of the desired distance of two agents."""
     return sigma_norm(ball(par.d), par.eps)
 
 
 def r_alpha(par: AlphaParameters) -> arb:
-    """Return ‖r‖_σ."""
+    """Return r_α = ‖r‖_σ, the σ-norm of the interaction range of two agents."""
     return sigma_norm(ball(par.r), par.eps)
 
 
 def adjacency(z: arb, par: AlphaParameters) -> arb:
-    """Return a_ij = ρ_h(z/r_α)."""
+    """Return the adjacency a_ij = ρ_h(z/r_α) of two agents at a distance of σ-norm z."""
     return bump(ball(z) / r_alpha(par), par.h)
 
 
 def d_beta(par: BetaParameters) -> arb:
-    """Return ‖d'‖_σ."""
+    """Return d_β = ‖d'‖_σ, the σ-norm of the desired clearance d' from obstacles."""
     return sigma_norm(ball(par.d), par.eps)
 
 
@@ -88,11 +88,11 @@ class _Action:
     h: arb
 
     def at(self, z: arb) -> arb:
-        """Return the action at z."""
+        """Return the pair action at a σ-norm z of the distance."""
         return bump(z / self.cutoff, self.h) * self._smooth(z)
 
     def slope(self, z: arb) -> arb:
-        """Return the action's derivative, which is continuous."""
+        """Return the derivative of the pair action by the σ-norm, which is continuous."""
         x = z / self.cutoff
         rising_slope = self.factor * sigma_1_slope(z + self.offset)
         return bump_slope(x, self.h) / self.cutoff * self._smooth(z) + bump(x, self.h) * rising_slope
@@ -101,7 +101,7 @@ class _Action:
         return self.factor * sigma_1(z + self.offset) + self.level
 
     def potential(self, z: arb) -> arb:
-        """Return the action's integral from its zero: decreasing to it, increasing to the cutoff, constant beyond."""
+        """Return the pair potential at a σ-norm: the integral of the pair action from its zero."""
         if z.is_exact():
             return self._potential(z)
         if z <= self.zero or z >= self.zero:
@@ -109,21 +109,21 @@ class _Action:
         return hull(arb(0), self._potential(z.lower()), self._potential(z.upper()))
 
     def _potential(self, z: arb) -> arb:
-        """Return the potential at one σ-norm."""
+        """Return the pair potential at one σ-norm of the distance."""
         return (self.at_cutoff if z >= self.cutoff else self._from_knee(z)) - self.at_zero
 
     @cached_property
     def at_zero(self) -> arb:
-        """Return the action's integral from h times the cutoff to its zero."""
+        """Return the integral of the pair action from h·cutoff to the zero of the action."""
         return self._from_knee(self.zero)
 
     @cached_property
     def at_cutoff(self) -> arb:
-        """Return the action's integral from h times the cutoff to the cutoff."""
+        """Return the integral of the pair action from h·cutoff to the cutoff."""
         return self._from_knee(self.cutoff)
 
     def _from_knee(self, z: arb) -> arb:
-        """Return the integral of the action from h times the cutoff: closed form below, enclosed by Arb above."""
+        """Return the integral of the pair action from h·cutoff to a σ-norm z."""
         knee = self.h * self.cutoff
         inner_part = arb(0) if z >= knee else self._closed(z.min(knee)) - self._closed(knee)
         outer_part = arb(0) if z <= knee else integrate(self._on_taper, knee, z.max(knee).min(self.cutoff))

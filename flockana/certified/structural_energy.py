@@ -35,5 +35,5 @@ def _inertia(x: Vectors) -> arb:
 
 
 def gain(law: Any) -> arb:
-    """Return c1α, the factor of V."""
+    """Return the gain c1α, the factor of V, the sum of pair potentials, in the energy."""
     return arb(exact(law.gains.c1_alpha))

@@ -70,7 +70,7 @@ class Structure:
             yield i, j, gap, norm2(gap)
 
     def near(self, x: Balls) -> Iterator[tuple[int, int, list[arb], arb]]:
-        """Return the pairs that are not certainly out of range."""
+        """Return (i, j, x_j − x_i, squared distance) of every pair that may be in range."""
         squared_range = ball(self.par.r) ** 2
         return (pair for pair in self.pairs(x) if not pair[3] >= squared_range)
 
@@ -126,12 +126,12 @@ class Structure:
         ]
 
     def translations(self) -> list[list[arb]]:
-        """Return the translations along the axes."""
+        """Return the displacement vectors of all agents by one unit along each axis."""
         return [[arb(int(k % self.m == a)) for k in range(self.n * self.m)] for a in range(self.m)]
 
     @property
     def _law(self) -> PairNumbers:
-        """Return the pair law at the present precision."""
+        """Return the α-pair law as balls of the current precision."""
         return _numbers(self.par, ctx.prec)
 
 
@@ -141,7 +141,7 @@ def _numbers(par: AlphaParameters, bits: int) -> PairNumbers:
 
 
 def outer(gap: Sequence[arb], across: arb, more: arb) -> list[list[arb]]:
-    """Return the pair block across·1 + more·gap gapᵀ."""
+    """Return the m × m matrix across·1 + more·gap gapᵀ of a pair with relative position gap."""
     return [
         [more * (square(x) if a == b else x * y) + (across if a == b else arb(0)) for b, y in enumerate(gap)]
         for a, x in enumerate(gap)

@@ -104,7 +104,7 @@ class Tube:
 
     @property
     def m(self) -> int:
-        """Dimension."""
+        """Dimension m of the space in which the agents move."""
         return int(self.q0.shape[1])
 
     @property
@@ -119,7 +119,7 @@ class Tube:
 
     @cached_property
     def boxes(self) -> tuple[list[arb], ...]:
-        """Balls of all coordinates, positions then velocities, at each step."""
+        """Boxes that contain positions and velocities of all enclosed solutions at each step, as balls."""
         with ctx.workprec(BITS):
             return tuple(item.hull for item in self.sets)
 
@@ -151,7 +151,7 @@ class Tube:
 
     @property
     def pairs(self) -> list[Pair]:
-        """All pairs, in the order of `distances_during`."""
+        """All pairs (i, j) of agents with i < j, in the order of `distances_during`."""
         return list(combinations(range(self.n), 2))
 
     def distances_during(self, k: int) -> list[arb]:

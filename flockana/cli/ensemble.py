@@ -125,7 +125,7 @@ def _draw(ax: Any, runs: xarray.Dataset, table: xarray.Dataset, axes: list[str])
 
 
 def _most_varying(table: xarray.Dataset) -> list[str]:
-    """Return the claims whose share varies most with the parameter, in their order."""
+    """Return the claims whose verified fraction of runs varies most with the parameters."""
     import numpy as np
 
     share = table.share.sel(of="verified").fillna(0.0)
@@ -156,7 +156,7 @@ def _show(runs: xarray.Dataset, table: xarray.Dataset) -> None:
 
 
 def share_rows(table: xarray.Dataset) -> list[dict[str, Any]]:
-    """Return the shares as plain data: a row for each claim and combination of parameters."""
+    """Return a table of claims' shares of runs as records, for all combinations of parameters."""
     rows = []
     for values in table.to_dataframe().reset_index().to_dict("records"):
         plain_values = {str(key): value.item() if hasattr(value, "item") else value for key, value in values.items()}
@@ -165,7 +165,7 @@ def share_rows(table: xarray.Dataset) -> list[dict[str, Any]]:
 
 
 def share_table(table: xarray.Dataset) -> Table:
-    """Return a table of the shares of each claim for every combination of parameters."""
+    """Return a table, to be printed, of the runs that verify and refute each claim, for all parameters."""
     from rich.text import Text
 
     from flockana.ensemble.shares import share_cells

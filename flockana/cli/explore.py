@@ -51,7 +51,7 @@ def explore_command(
 
 
 def _first(name: str, folder: str) -> dict[str, str]:
-    """Return the page's first case: a saved run, or a user's flock saved as a run in a folder."""
+    """Return the kind and name of the scenario, law, run or flock that `flockana explore` opens."""
     import os
     from pathlib import Path
 

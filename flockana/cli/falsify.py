@@ -108,7 +108,7 @@ def read_ranges(texts: list[str]) -> dict[str, tuple[float, float]]:
 
 
 def search_facts(search: Falsification) -> dict[str, Any]:
-    """Return a search and its result as plain data."""
+    """Return a search for counterexamples to a theorem, with its result, as plain data."""
     names = ("theorem", "claim", "scenario", "found", "status", "margin", "error")
     facts = {name: getattr(search, name) for name in names}
     facts |= {name: facts[name] if isfinite(facts[name]) else None for name in ("margin", "error")}

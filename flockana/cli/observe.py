@@ -167,7 +167,7 @@ def _scales(law: Any, d: float | None, r: float | None) -> tuple[float, float]:
 
 
 def _columns(text: str | None) -> Any:
-    """Return columns in the form that `read_recording` expects: by meaning, or all names."""
+    """Return the names of table columns, as a list or by meaning, as `read_recording` takes them."""
     if text is None:
         return None
     parts = [part.strip() for part in text.split(",")]
@@ -234,7 +234,7 @@ def _print(rec: Recording, rows: list[tuple[str, str, str]], results: dict[str, 
 
 
 def _plain(rec: Recording, seen: Any, results: dict[str, Any]) -> dict[str, Any]:
-    """Return all results as plain data for JSON."""
+    """Return measures, comparison, fit and verdicts of a recorded flock as plain data for JSON."""
     series = {str(name): seen[name].values.astype(float).tolist() for name in seen.data_vars}
     measures = {name: [x if isfinite(x) else None for x in values] for name, values in series.items()}
     plain_values: dict[str, Any] = {

@@ -44,7 +44,7 @@ def prepare_output() -> None:
 
 
 def finish_output() -> None:
-    """Flush the output; raise if that fails, once only."""
+    """Flush the standard output; raise if it cannot be written."""
     if sys.stdout is not None:
         sys.stdout.flush()
 

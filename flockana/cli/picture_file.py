@@ -21,7 +21,7 @@ _DPI = 160
 
 
 def ensure_file(path: Path | None, kinds: tuple[str, ...] = KINDS) -> None:
-    """Raise if a picture of this kind cannot be written there."""
+    """Raise if a path cannot take a picture: a folder, an unknown file type or an unwritable place."""
     if path is None:
         return
     if os.path.isdir(path):

@@ -27,7 +27,7 @@ BUILDERS |= dict.fromkeys(("simple-cubic", "fcc", "hcp", "bcc"), "NXxNYxNZ")
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """Positions with their scale and range."""
+    """Positions of agents with their lattice scale d and interaction range r."""
 
     name: str  # what was asked for
     q: FloatArray  # shape (n, m)
@@ -40,7 +40,7 @@ class Source:
 
 
 def read_source(name: str, *, d: float | None = None, r: float | None = None, time: float | None = None) -> Source:
-    """Read or build a configuration."""
+    """Read the positions of agents from a file, or build them by a pattern's name."""
     path = ensure_path(name)
     d, r = (None if v is None else ensure_positive(key, v) for key, v in (("--d", d), ("--r", r)))
     law: Any = None

@@ -193,7 +193,7 @@ def slowest(linear: Linearisation, count: int) -> tuple[Mode, ...]:
 
 
 def summary(linear: Linearisation, slow: Iterable[Mode], name: str) -> dict[str, Any]:
-    """Return the linearisation's results as plain data."""
+    """Return the residual, zero modes, slow modes and stability of a linearisation as plain data."""
     from flockana.stability.centre_transfer import CentreOfMass
 
     slow, (n, m) = tuple(slow), linear.q.shape

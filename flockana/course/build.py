@@ -68,7 +68,7 @@ def lectures() -> Path:
 
 
 def sources() -> list[Path]:
-    """Return the lectures in teaching order."""
+    """Return the source files of the lectures, in teaching order."""
     files = {course_pages.number_of(path): path for path in lectures().glob("*.py")}
     return [files[lecture.number] for lecture in course_pages.course_map(lectures())]
 
@@ -143,7 +143,7 @@ def exercises(source: Path) -> Iterator[Exercise]:
 
 
 def asked(check: str) -> tuple[str, str]:
-    """Return the variable in an exercise's check, and the form of the answer."""
+    """Return the variable that an exercise's check grades, and the expected form of the answer."""
     *before, last_statement = ast.parse(check).body
     match last_statement:
         case ast.Expr(ast.Call(func=ast.Name("grade"), args=[ast.Name(name), right], keywords=options)) if not before:

@@ -22,7 +22,7 @@ _ACCENTS = {'"': "\u0308", "'": "\u0301"}
 
 @dataclass(frozen=True)
 class Lecture:
-    """A lecture's entry in the map of the course, or an assignment's, whose number begins with A."""
+    """Entry of a lecture in the course map, or of an assignment, whose number begins with A."""
 
     number: str  # number, title: as in its file's name and its first line
     title: str

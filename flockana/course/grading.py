@@ -88,7 +88,7 @@ def answered(answer: Any, form: str) -> Grade:
 
 
 def form_of(right: Any) -> str:
-    """Return the form of a right answer; empty for a function."""
+    """Return the name of the form that a right answer has; empty if it is a function."""
     if isinstance(right, Callable):  # type: ignore[arg-type]
         return ""
     return next(name for name, fits in _FORMS.items() if fits(right))
@@ -170,7 +170,7 @@ def _same(answer: Any, right: Any, tolerance: Callable[[float], float]) -> bool:
 
 
 def _matched(answers: list[Any], rights: list[Any], tolerance: Callable[[float], float]) -> bool:
-    """Return whether the answers match the right ones one to one."""
+    """Return whether a student's answers and the right ones agree one to one, in any order."""
     for b in rights:
         index = next((k for k, a in enumerate(answers) if _same(a, b, tolerance)), None)
         if index is None:

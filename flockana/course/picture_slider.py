@@ -52,11 +52,11 @@ class Frames:
     seconds: float = 0.0  # of a film; 0 for a slider
 
     def __repr__(self) -> str:
-        """Return a one-line description."""
+        """Return a one-line description of the picture slider."""
         return f"<{len(self.pictures)} pictures of {self.title}, {self.name} from {self.texts[0]} to {self.texts[-1]}>"
 
     def html(self) -> str:
-        """Return a self-contained page with the pictures."""
+        """Return the slider with its pictures as a self-contained HTML page."""
         sources = ["data:image/png;base64," + base64.b64encode(picture).decode() for picture in self.pictures]
         return _PAGE.format(
             title=escape(self.title),
@@ -78,7 +78,7 @@ class Frames:
 
 
 def _as_script(value: Any) -> str:
-    """Return a JSON literal that cannot end its script."""
+    """Return data as a JSON literal that cannot end the HTML script element around it."""
     return json.dumps(value).replace("<", "\\u003c")
 
 

@@ -37,7 +37,7 @@ def slides(source: Path) -> Any:
 
 
 def _slides(cells: list[Any]) -> Iterator[Any]:
-    """Yield title, figures with a sentence each, and the code between, which is run but skipped."""
+    """Yield the slides of a lecture: title with aims, one for each figure, and hidden code cells."""
     title = head = ""
     code: list[Any] = []
     for cell in cells:
@@ -64,7 +64,7 @@ def _marked(cell: Any, kind: str) -> Any:
 
 
 def shown() -> list[Path]:
-    """Return the numbers of the lectures that have slides; assignments have none."""
+    """Return the source files of the lectures that have slides; assignments have none."""
     return [notebook_path for notebook_path in sources() if not notebook_path.name.startswith("A")]
 
 

@@ -16,12 +16,12 @@ _VARY = {"exercise", "solution", "check"}
 
 
 def variants(folder: Path) -> dict[str, dict[str, list[list[str]]]]:
-    """Return the rows of each exercise whose numbers may vary, by lecture and by the variable of the answer."""
+    """Return the alternative numbers of each exercise, by lecture and by the variable of the answer."""
     return tomllib.loads((folder / "numbers.toml").read_text(encoding="utf-8"))
 
 
 def replace_numbers(text: str, rows: list[list[str]], column: int) -> str:
-    """Return a text with the first entry of each row replaced by that of a column; a number's digits stay together.
+    """Return a text with listed numbers replaced by their alternatives in one column of a table.
 
     Examples
     --------
@@ -34,7 +34,7 @@ def replace_numbers(text: str, rows: list[list[str]], column: int) -> str:
 
 
 def draw_column(student: str, exercise: str, columns: int) -> int:
-    """Return the number of a student's column in an exercise: equal names give equal columns, ignoring case."""
+    """Return the index of the set of numbers that a student gets in an exercise, from the student's name."""
     name = " ".join(student.casefold().split())
     return int(sha256([f"{name}/{exercise}"]), 16) % columns
 

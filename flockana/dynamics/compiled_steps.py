@@ -87,7 +87,7 @@ class Engine(Integrator):
         return int(advanced.steps)
 
     def list_pairs(self) -> bool:
-        """List the pairs of the start; return whether they fit into memory."""
+        """Build the list of all pairs of agents in reach at the start; return whether it fits into memory."""
         if self._reach:
             self._sort()
             with several_threads(self._threads) as several:
@@ -100,7 +100,7 @@ class Engine(Integrator):
         return self.block.y[0, : n * m].reshape(n, m)
 
     def _sort(self) -> None:
-        """Sort the agents by cell."""
+        """Sort the agents by spatial cell, so that neighbours are close in memory."""
         (n, m), order = self.frame.shape, spatial_order(self._places, self._reach)
         for rows in (self.block.y, self.block.f):
             state_pair = rows[0, : 2 * n * m].reshape(2, n, m)
@@ -115,7 +115,7 @@ class Engine(Integrator):
         return self.due[: self._sampled], states[: self._sampled], work_integral[: self._sampled]
 
     def _room_for(self, samples: int) -> tuple[FloatArray, FloatArray]:
-        """Return work arrays for the states and work of samples."""
+        """Return empty arrays for the states and the work integral at a number of samples."""
         return np.empty((samples, 3, *self.frame.shape)), np.empty(samples)
 
 

@@ -55,7 +55,7 @@ class State(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Encounters:
-    """Distances and obstacles that no step may skip over."""
+    """Interaction distances, singular distances and obstacles of a law that no step may skip over."""
 
     radii: FloatArray  # (n, K): distances at which each agent begins or ceases to feel another, rising
     far: float  # how far two agents may go within them in one step
@@ -79,11 +79,11 @@ class Encounters:
 
     @property
     def any(self) -> bool:
-        """Whether the law has any encounter to check."""
+        """Whether the law has distances or obstacles that an integration step may not skip over."""
         return self.radii.size > 0 or self.bodies is not None or self.poles.size > 0
 
     def share(self, h: float, before: State, after: State) -> float:
-        """Return the share of a step that may be accepted, 1 for all of it; negative if a pair crosses a pole."""
+        """Return the fraction of a step that may be accepted; negative if a pair crosses a singularity."""
         n, m = before.q.shape
         step_ends = Ends(float(h), *(thawed(np.ascontiguousarray(x, dtype=np.float64)) for x in (*before, *after)))
         around, view_pairs = self.around(np.arange(n), 1.0), ((0.0, np.zeros(m), np.zeros(m)), no_pairs(0, m))
@@ -93,7 +93,7 @@ class Encounters:
         return share
 
     def compiled(self, *, crowd: bool, several: bool = False) -> Kernel:
-        """Return `share_of_step` with the checks that the law needs, and that of too many pairs for a list or not."""
+        """Return the compiled function `share_of_step` with only the checks that the law needs."""
         bodies, poles, pairs = self.bodies is not None, self.poles.size > 0, self.radii.size > 0
         flags = {"BODIES": bodies, "PAIRS": pairs or poles, "POLES": poles, "CROWD": crowd}
         if len(self.radii) >= LARGE:
@@ -102,7 +102,7 @@ class Encounters:
         return kernel
 
     def around(self, order: npt.NDArray[Any], toward: float) -> Around:
-        """Return the numbers for compiled encounter checks, with agents in the given order."""
+        """Return the data of the encounter checks for compiled code, with agents in the given order."""
         few = self.among is not None
         first, second_agents = np.argsort(order).astype(np.uint32)[self.among].T if few else np.empty((2, 0), np.uint32)
         edges = np.concatenate([self.radii.ravel(), [] if few else self.poles])
@@ -142,7 +142,7 @@ class StepChecks:
         return bool(self._rules.energetic and self._ledger[IN_VAIN] < PATIENCE)
 
     def judged(self, order: npt.NDArray[Any], *, compiled: bool = True, several: bool = False) -> Judged:
-        """Return the numbers against which code for one thread or several checks steps, agents in the given order."""
+        """Return the data by which compiled code accepts or rejects steps, agents in the given order."""
         if order is not self._order:
             self._order, self.near = order, no_pairs(*self._shape)
             self._judged: dict[bool, Judged] = {}
@@ -159,13 +159,13 @@ class StepChecks:
         return self._judged[several]
 
     def examine(self, block: Block, order: npt.NDArray[Any], kept: Pairs) -> tuple[float, bool]:
-        """Return (length of the repeated step, 0 if accepted; whether the run ends at a pole)."""
+        """Return the length at which to repeat a step, 0 if accepted, and whether the run ends at a pole."""
         judged = self.judged(order, compiled=False)
         shorter_step, is_singular = checked(block, 0, judged, self._view, kept, self.near)
         return self.examine(block, order, kept) if is_singular and self.make_room() else (shorter_step, is_singular)
 
     def make_room(self) -> bool:
-        """Return whether the pair list overflowed; enlarge the list, or check pairs block by block from now on."""
+        """Enlarge or abandon the list of near pairs if it has overflowed; return whether it had."""
         if (near_pairs := with_room(self.near)) is not None:
             self.near = near_pairs
             return True
@@ -176,5 +176,5 @@ class StepChecks:
 
 
 def at_a_pole(t: float) -> str:
-    """Return the message of a run that ends at a pole, which no shorter step passes."""
+    """Return the message of a run that ends where agents meet at a singularity of their force."""
     return f"agents met at t = {t:g} where their potential is infinite or their force has no limit: no motion goes on"

@@ -82,7 +82,7 @@ def error_floor(scales: Scales | None, start: Start, duration: float, rtol: floa
 
 
 def rounding_floors(t: FloatArray, q: FloatArray, p: FloatArray, u: FloatArray, energies: FloatArray) -> ErrorFloors:
-    """Return rounding errors of a run's largest numbers, and of the distances moved within the time's rounding."""
+    """Return the rounding errors of positions, velocities and energies of a run, times included."""
     late, far, fast, largest_input, much = (float(np.abs(x).max()) if x.size else 0.0 for x in (t, q, p, u, energies))
     tick = float(np.spacing(late))
     position_error, speed, work_floor = (float(np.spacing(x)) for x in (far, fast, much))

@@ -32,7 +32,7 @@ class Interpreter(Integrator):
         self.begin()
 
     def begin(self) -> None:
-        """Open a solver at the first row of the block, without memory of earlier steps."""
+        """Start a new solver at the current state, without memory of earlier steps."""
         if self.stops.size:
             if self.plan.solver.dt:
                 t, y = float(self.block.t[0]), self.block.y[0, : self._solved].copy()
@@ -46,31 +46,31 @@ class Interpreter(Integrator):
 
     @property
     def _solved(self) -> int:
-        """Number of the row's components that the solver steps."""
+        """Number of components of the state vector that the solver integrates."""
         return int(self.block.y.shape[1])
 
     def _rate(self) -> Callable[[float, FloatArray], FloatArray]:
-        """Return the right-hand side that the solver steps."""
+        """Return the right-hand side of the differential equation that the solver integrates."""
         return self.frame.rate(self._counted)
 
     def _fill(self, row: int, t: float, y: FloatArray, f: FloatArray) -> None:
-        """Copy time, vector and rate of the solver into a row of the block."""
+        """Store time, state vector and its time derivative in one row of the block of steps."""
         self.block.t[row], self.block.y[row], self.block.f[row] = t, y, f
 
     def _counted(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Return the law's flow, and count the evaluation."""
+        """Return acceleration and energy rate of the law, and count the evaluation."""
         u, rate = self.flow(t, q, p)
         return self._count(t, u), rate
 
     def _count(self, t: float, u: FloatArray) -> FloatArray:
-        """Count an evaluation and return its value; stop the solver once values are not finite."""
+        """Count one evaluation of the law and return its value; stop LSODA if that is not finite."""
         self.evaluations += 1
         if self.plan.solver.name == "LSODA" and not finite(u):  # it would try to step over it for ever
             raise FloatingPointError(f"{self.law.title} gives no finite values at t = {t:g}")
         return u
 
     def _open(self, until: float, first: float | None) -> None:
-        """Open a new solver from the first row towards a time, with the given first step if possible."""
+        """Open a new solver from the current state to a given time, with an optional first step size."""
         t, y, f = float(self.block.t[0]), *(item[0, : self._solved].copy() for item in self.block[1:3])
         self._course: Callable[[float], FloatArray] | None = None
         part_sizes, control = (self.frame.size, self.frame.size, int(self.frame.energetic)), self.plan.control
@@ -79,13 +79,13 @@ class Interpreter(Integrator):
         self._solver: Any = self.plan.solver.open(self._rhs, t, y, f, limits)
 
     def _write(self, row: int) -> bool:
-        """Copy the solver's state and rate into a row; return whether they are finite."""
+        """Store the solver's state and rate in one row of the block; return whether they are finite."""
         t, y, f = float(self._solver.t), self._solver.y, getattr(self._solver, "f", None)
         self._fill(row, t, y, self._rhs(t, y) if f is None else f)
         return finite(self.block.y[row], self.block.f[row])
 
     def advance(self) -> int:
-        """Make one accepted step into the second row; return 0 if the run ends, with the reason in `failure`."""
+        """Make one accepted step; return 1, or 0 if the run ends, with the reason in `failure`."""
         while self.step():
             if self.checks.energetic:
                 for row in (0, 1) if np.isnan(self.block.energy[0]) else (1,):
@@ -102,7 +102,7 @@ class Interpreter(Integrator):
         return 0
 
     def step(self) -> bool:
-        """Try one step into the second row; return whether it succeeds, with the reason in `failure` if not."""
+        """Try one solver step; return whether it succeeds, with the reason in `failure` if not."""
         if self._solver.status == "finished":  # a stop, or a step that was made again ended here
             h = getattr(self._solver, "h_abs", None)  # the next step, unless the last one only led across a switch
             across = h is None or h < _ACROSS * np.spacing(abs(float(self.block.t[0])))
@@ -125,7 +125,7 @@ class Interpreter(Integrator):
         return False
 
     def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return (times, states, work) of the samples due within the step."""
+        """Return times, states and work integral of the samples within the last step."""
         due_times = self.due[self.due < self.block.t[1]]
         states, work_integral = np.empty((due_times.size, 3, *self.frame.shape)), np.full(due_times.size, np.nan)
         for k, t in enumerate(due_times.tolist()):
@@ -153,7 +153,7 @@ class VelocityInterpreter(Interpreter):
         return self.frame.size
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Return the rate of the velocities along the motion, and NaN for the energy's."""
+        """Return the accelerations along the motion, and NaN as energy rate, which the law lacks."""
         return self.law.acceleration(t, q), np.nan
 
     def _rate(self) -> Callable[[float, FloatArray], FloatArray]:

@@ -59,7 +59,7 @@ class MapStepper(Stepper):
         return self.done >= self.steps
 
     def advance(self) -> int:
-        """Make some steps; reject all steps from the first non-finite one on."""
+        """Iterate the map for a block of steps; reject all from the first non-finite state on."""
         t0, dt, first, last = self.t_span[0], self.law.dt, self.done, min(self.done + self.pace.steps, self.steps)
         rows = np.arange(1, last - first + 1)
         if self.wanted is not None:
@@ -85,7 +85,7 @@ class MapStepper(Stepper):
         return count
 
     def _ensure_resolved(self, before: State, after: State, t: float) -> None:
-        """Raise if a step from time t on skips an encounter."""
+        """Raise if a step from time t skips over an encounter of agents or with an obstacle."""
         h, share = self.law.dt, self.encounters.share(self.law.dt, before, after) if self.encounters else 1.0
         if share < 1.0:
             raise ArgumentError(
@@ -114,7 +114,7 @@ class MapStepper(Stepper):
             yield self._made._replace(extra=public).at(rows)
 
     def continue_from(self, count: int) -> None:
-        """Continue from the end of the block, with a copy of the memory, which a law may change in place."""
+        """Take the state at the end of a block of steps, with copied memory, as start of the next."""
         self.q, self.p, self.done = self._made.q[-1], self._made.p[-1], self.done + count
         self.memory = copied({name: values[-1] for name, values in self._series.items()})
 

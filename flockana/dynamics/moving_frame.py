@@ -28,7 +28,7 @@ class Plan(NamedTuple):
 
     @property
     def due(self) -> FloatArray:
-        """Times of samples at which no step needs to end."""
+        """Times of samples that are interpolated, as no step needs to end there."""
         return np.empty(0) if self.keep is None or self.solver.dt else self.keep
 
     def describe_failure(self, t: float, why: str) -> str:
@@ -38,7 +38,7 @@ class Plan(NamedTuple):
         return f"{self.solver.name} gave up at t = {t:g}: {why}"
 
     def describe_cuts(self, steps: int, passed: int) -> str:
-        """Return in words why a run with too many cut fixed steps ends; '' if the run continues."""
+        """Return why a run ends whose fixed steps are subdivided too often; '' if it continues."""
         if not self.solver.dt or steps <= _PIECES * (passed + _SPARE):
             return ""
         t = float(self.stops[min(passed, len(self.stops) - 1)])
@@ -71,7 +71,7 @@ class Frame:
 
     @property
     def size(self) -> int:
-        """Number of positions."""
+        """Number n·m of position coordinates of the flock."""
         return self.shape[0] * self.shape[1]
 
     @property
@@ -81,18 +81,18 @@ class Frame:
         return float(self.t0), self.origin[:m].copy(), self.drift[:m].copy()
 
     def start(self, q0: FloatArray, p0: FloatArray) -> FloatArray:
-        """Vector of the start's state."""
+        """State vector of the initial positions and velocities, relative to the mean motion."""
         y0: FloatArray = np.concatenate([q0.ravel(), p0.ravel(), np.zeros(int(self.energetic))]) - self.origin
         return y0
 
     def state(self, t: float, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return positions and velocities of a state vector."""
+        """Return the positions and velocities, in the fixed frame, of a state vector at a time."""
         full_state = y + (self.origin + self.drift * (t - self.t0))
         state_pair = full_state[: 2 * self.size].reshape(2, *self.shape)
         return state_pair[0], state_pair[1]
 
     def rate(self, flow: Flow) -> Callable[[float, FloatArray], FloatArray]:
-        """Return the right-hand side at a state vector."""
+        """Return the right-hand side of the equations of motion, a function of time and state vector."""
         dimension, has_energy = self.size, self.energetic
 
         def rhs(t: float, y: FloatArray) -> FloatArray:

@@ -103,7 +103,7 @@ class MeasuredRun(ResultCache):
         return ErrorFloors(*map(max, allowed, rounding))
 
     def metrics(self) -> xarray.Dataset:
-        """C, R, Ẽ, K̃ and their companions, and the law's own `measures`, over time: a Dataset of dimension ``time``."""
+        """Measures of the run over time, and the law's own, as a Dataset of dimension ``time``."""
         return self._metrics
 
     @cached_property
@@ -159,7 +159,7 @@ class MeasuredRun(ResultCache):
         return self._measured[name].copy()
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state without cached results, some of which cannot be pickled."""
+        """Return the run's data for pickling, without cached results."""
         return {name: value for name, value in self.__dict__.items() if name not in ("_memory", "_own")}
 
     @cached_property
@@ -208,7 +208,7 @@ class MeasuredRun(ResultCache):
         return replace(approach, lower_by_interval=self.over_intervals(np.minimum, approach.lower_by_interval))
 
     def over_intervals(self, reduce: np.ufunc, values: FloatArray) -> FloatArray:
-        """Reduce numbers of the path's intervals, shape (..., S), to one for each interval between samples.
+        """Reduce values on the intervals between solver steps to one for each interval between samples.
 
         Parameters
         ----------
@@ -231,7 +231,7 @@ class MeasuredRun(ResultCache):
         return self._closest.lower
 
     def cohesion_bound(self) -> float:
-        """An upper bound of the cohesion radius max ‖q_i − q_c‖ at every time of the run, under the same conditions."""
+        """An upper bound of max ‖q_i − q_c‖ at every time, under the conditions of `min_distance`."""
         bounds = self.cohesion_bounds
         return float(bounds.max()) if bounds.size else cohesion_radius(self.q[0])
 

@@ -12,7 +12,7 @@ from flockana.base.value_checks import FloatArray
 
 
 class Sample(NamedTuple):
-    """One instant of a run."""
+    """State of a run at one time: positions, velocities, accelerations and further values."""
 
     t: float
     q: FloatArray
@@ -40,7 +40,7 @@ class Samples(NamedTuple):
         return cls(t, q, p, u, extra_series, blocks[0].wanted)
 
     def at(self, rows: Any) -> Samples:
-        """Return selected instants: views where `rows` is a slice."""
+        """Return the samples at selected indices, as views where `rows` is a slice."""
         extra_series = {name: values[rows] for name, values in self.extra.items()}
         return Samples(self.t[rows], self.q[rows], self.p[rows], self.u[rows], extra_series, self.wanted)
 
@@ -77,7 +77,7 @@ class Start(NamedTuple):
 
 @dataclass
 class Tally:
-    """Status and counts of a run, updated as it goes so that they survive an interruption."""
+    """Status, message and numbers of steps and evaluations of a run, kept even if it is interrupted."""
 
     evaluations: int = 0  # of the law
     steps: int = 0

@@ -41,7 +41,7 @@ _BETWEEN = {"t": ("step",), "slack": ("interval", "agent")} | dict.fromkeys("qpu
 
 
 def to_xarray(run: Any) -> xarray.Dataset:
-    """See `Trajectory.to_xarray`."""
+    """Return a run as an `xarray.Dataset`, as `Trajectory.to_xarray` does."""
     import xarray
 
     dims = ("time", "agent", "axis")
@@ -66,7 +66,7 @@ def to_xarray(run: Any) -> xarray.Dataset:
 
 
 def save(dataset: xarray.Dataset, path: str | os.PathLike[str]) -> Path:
-    """See `Trajectory.save`."""
+    """Write a run to a netCDF-4 file, as `Trajectory.save` does."""
     # in memory first: HDF5 tears itself apart on a disk that fills
     netcdf = dataset.to_netcdf(None, engine="h5netcdf")
     with atomic_write(path, remedy="choose a file name and folder to write to") as partial, partial.open("wb") as file:
@@ -121,7 +121,7 @@ def _ensure_whole(source: Path) -> None:
 
 
 def load(run_of: Callable[..., _Run], path: str | os.PathLike[str]) -> _Run:
-    """See `Trajectory.load`."""
+    """Read a run from a netCDF-4 file, as `Trajectory.load` does."""
     import xarray
 
     source = ensure_path(path)

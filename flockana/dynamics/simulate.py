@@ -201,7 +201,7 @@ def _plan(
 
 
 def _beside_switches(law: Law | VelocityLaw, t_span: tuple[float, float]) -> FloatArray:
-    """Return the times of law switches, each with the next floating-point time after it."""
+    """Return the times at which the law switches, each with a floating-point time just after it."""
     times = law.switches(*t_span)
     doubled_times = np.stack([times, times + 4.0 * np.spacing(np.abs(times))], axis=1).ravel()
     return doubled_times[(doubled_times > t_span[0]) & (doubled_times < t_span[1])]

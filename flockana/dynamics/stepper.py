@@ -23,7 +23,7 @@ _SLUGGISH, _LONG = 1e-3, 5e4  # of steps made in Python this share of the law's 
 
 
 class Stepper(ABC):
-    """Stepper of a run from its current time on."""
+    """Base class of steppers, which advance a run from its current time."""
 
     first: Samples | None  # the start, if it is kept
     failure: str = ""  # why the run ends early, if it does
@@ -41,19 +41,19 @@ class Stepper(ABC):
 
     @abstractmethod
     def samples(self, count: int) -> Iterator[Samples]:
-        """Yield the samples and steps to be kept from these steps."""
+        """Yield the samples and steps to be kept from the steps just made."""
 
     def describe_failure(self, steps: int, count: int) -> str:
-        """Return in words why a run ends after this number of steps; '' if it continues."""
+        """Return why a run ends after a given number of steps, in words; '' if it continues."""
         return self.failure
 
     @abstractmethod
     def continue_from(self, count: int) -> None:
-        """Continue from the end of these steps."""
+        """Continue from the end of the steps just made."""
 
 
 class Integrator(Stepper):
-    """Integrator of a continuous law; it writes steps into a block, after the block's first row."""
+    """Base class of integrators of a continuous law, which write their steps into a block of arrays."""
 
     order: npt.NDArray[np.uint64]  # every agent's own number, in the order of the vectors
 
@@ -76,10 +76,10 @@ class Integrator(Stepper):
 
     @abstractmethod
     def between(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return (times, states, work) of the samples due within the steps; work is NaN where a step ended."""
+        """Return times, states and work integral of the samples within the steps just made."""
 
     def states(self, count: int) -> tuple[FloatArray, FloatArray]:
-        """(states of shape (count, 3, n, m), work) at the ends of the steps."""
+        """Return states, shape (count, 3, n, m), and work integral at the ends of the steps just made."""
         states, work_integral = np.empty((count, 3, *self.frame.shape)), np.empty(count)
         with several_threads(self.plan.threads if self.frame.shape[0] >= LARGE else 1) as several:
             write = parallel_record if several else record
@@ -108,12 +108,12 @@ class Integrator(Stepper):
             yield both.at(np.argsort(both.t))
 
     def describe_failure(self, steps: int, count: int) -> str:
-        """Return why the run ends here; for a law with a pole at coincidence, name the nearest pair."""
+        """Return why the run ends, with the nearest pair if the law has a pole at coincidence."""
         text = self.failure or self._describe_stall(steps, count)
         return text.rstrip(".") + self._name_nearest(count) if text and 0.0 in self.law.poles else text
 
     def _describe_stall(self, steps: int, count: int) -> str:
-        """Return in words that recent steps are far too short for the law's time or the span; '' otherwise."""
+        """Return in words that recent steps are far too short for the law or the time span; or ''."""
         at, (start_time, previous_count) = float(self.block.t[count]), self._counted_from
         ahead = self.stops[self.stops > at]
         if self.plan.solver.dt:
@@ -134,7 +134,7 @@ class Integrator(Stepper):
         return text if 0.0 in self.law.poles else text + self._name_nearest(count)
 
     def _name_nearest(self, row: int) -> str:
-        """Return in words which agents are nearest in a row of the block; '' for one agent."""
+        """Return in words which two agents are nearest to each other at a step; '' for one agent."""
         from scipy.spatial import cKDTree
 
         n, m = self.frame.shape
@@ -154,6 +154,6 @@ class Integrator(Stepper):
 
 
 def _among(times: FloatArray, some: FloatArray) -> npt.NDArray[np.bool_]:
-    """Return which times occur in a rising list, faster than `np.isin` for each block."""
+    """Return a mask of the times that occur in a rising list of times, faster than `np.isin`."""
     nearest = np.append(some, np.nan)[np.searchsorted(some, times)]
     return np.asarray(nearest == times)

@@ -22,7 +22,7 @@ _TOGETHER = 256  # steps that came one at a time are put into one array, each: s
 
 
 class Course(NamedTuple):
-    """Samples and steps in order of time; `slack` bounds the path's error between them, or is None."""
+    """Samples and solver steps of a run in order of time, with an error bound of the path between or None."""
 
     t: FloatArray
     q: FloatArray
@@ -78,7 +78,7 @@ class Between:
         return Between(self.t[is_inside], self.q[is_inside], self.p[is_inside], self.u[is_inside], slack)
 
     def in_units(self, length: float, time: float) -> Between:
-        """Return the steps in other units (`flockana.rescale`)."""
+        """Return the solver steps in other units of length and time (`flockana.rescale`)."""
         slack = None if self.slack is None else self.slack * length
         return Between(self.t * time, self.q * length, self.p * (length / time), self.u * (length / time**2), slack)
 
@@ -165,7 +165,7 @@ class Recorder:
 
 
 def _detours(before: Sample, middle: Sample, after: Sample, slack: FloatArray, later: FloatArray) -> FloatArray:
-    """Return the largest path error of leaving out the middle one of three steps."""
+    """Return a bound of each agent's path error if the middle one of three steps is left out."""
     knots = (before, middle, after)
     states = (tuple(np.ascontiguousarray(array) for array in (knot.q, knot.p, knot.u)) for knot in knots)
     farthest: FloatArray = detours(tuple(knot.t for knot in knots), *states, slack, later)

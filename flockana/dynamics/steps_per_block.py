@@ -28,6 +28,6 @@ class Pace:
         return self.steps
 
     def __exit__(self, *_: object) -> None:
-        """Adapt the number of steps to the measured time."""
+        """Adapt the number of steps in the next block to the time that this block took."""
         block_seconds = max(time.perf_counter() - self._started, 1e-9)
         self.steps = min(max(1, int(self.steps * min(_GROWS, _LASTS / block_seconds))), self.most)

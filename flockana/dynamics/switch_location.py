@@ -21,7 +21,7 @@ _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, 2 * _DEGREE))
 
 
 class SwitchingInterpreter(Interpreter):
-    """Integrator from switch to switch: every pair is held in its smooth piece until one leaves it.
+    """Integrator of a law with jumps: each pair keeps one smooth formula from switch to switch.
 
     A pair held at a surface (a Filippov sliding mode) would switch ever more frequently: it ends the run.
     """
@@ -37,11 +37,11 @@ class SwitchingInterpreter(Interpreter):
         self.first = self.first and self.first._replace(u=self.flow(*start[:3])[0][None])
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Return the flow of a law with every pair's piece continued smoothly beyond its edges."""
+        """Return accelerations and energy rate, each pair's smooth formula continued past its switches."""
         return self.law.piece_flow(self.pieces, t, q, p)
 
     def advance(self) -> int:
-        """Make one step up to the first switch, which may be followed by a sliding mode."""
+        """Make one step, cut at the first switch of a pair; a sliding mode there ends the run."""
         if not self.step():
             return 0
         t, end = self.block.t.tolist()
@@ -65,11 +65,11 @@ class SwitchingInterpreter(Interpreter):
         yield from super().samples(count)
 
     def describe_failure(self, steps: int, count: int) -> str:
-        """Return why the run ends; short steps before switches are no reason, a sliding pair is named."""
+        """Return why the run ends, such as a pair in a sliding mode; '' if it continues."""
         return self.failure
 
     def continue_from(self, count: int) -> None:
-        """Go on from the end of the step, after a switch with pairs in their new pieces."""
+        """Continue from the end of the step just made, with each pair's formula after a switch."""
         super().continue_from(count)
         if self._crossed is not None:
             self.pieces, self._crossed = self._crossed, None
@@ -81,7 +81,7 @@ class SwitchingInterpreter(Interpreter):
 
 
 def first_switch(law: SwitchedLaw, pieces: Pieces, way: Way, start: float, end: float) -> float | None:
-    """Return the first time in a step at which a pair is beyond its piece; None without one.
+    """Return the first time in a step at which a pair crosses a switching distance of the law, or None.
 
     Between two turns every distance that could reach an edge is monotone: no pair can have left and be back.
     """

@@ -125,12 +125,12 @@ class Trajectory(MeasuredRun):
             self.between.check_fits(self.t, self.q)
 
     def __repr__(self) -> str:
-        """Return a one-line description without the arrays."""
+        """Return a one-line description of the run, without its arrays."""
         span, law = f"t = {self.t[0]:g} to {self.t[-1]:g}", self.law.title
         return f"<Trajectory of {self.n} agents, m = {self.m}, {law}, {len(self.t)} samples, {span}, {self.status}>"
 
     def facts(self) -> dict[str, str]:
-        """Return the rows of the printed table: sizes, times, method and status."""
+        """Return the rows of the table that describes a run: sizes, times, method and status."""
         steps = f", {self.stats['steps']} steps" if "steps" in self.stats else ""
         return {
             "law": self.law.title,

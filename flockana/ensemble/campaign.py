@@ -197,7 +197,7 @@ def ensure_seeds(seeds: Any) -> tuple[int, ...]:
 
 
 def _split(parameters: Any) -> tuple[dict[str, list[Scalar]], dict[str, Scalar]]:
-    """Return options split into (axes with several values, fixed ones)."""
+    """Return scenario options split into varied ones, with several values each, and fixed ones."""
     axes: dict[str, list[Scalar]] = {}
     fixed_values: dict[str, Scalar] = {}
     if not isinstance(parameters, Mapping | None):
@@ -247,7 +247,7 @@ def _ensure_theorems(given: Any) -> tuple[str | Theorem, ...] | None:
 
 
 def _named(given: Iterable[Any]) -> Iterator[Any]:
-    """Yield the given theorems with their names; raise on other values."""
+    """Yield theorems given by name or as the user's own claims; raise on other values."""
     for item in given:
         if not isinstance(item, str | Theorem):
             raise ArgumentError(f"theorems: {format_value(item)}: expected names of theorems, or claims of your own")

@@ -47,7 +47,7 @@ class Request:
     own: tuple[Theorem, ...] = ()  # the user's claims, which `theorems` names
 
     def to_dict(self, *, strict: bool = False) -> dict[str, Any]:
-        """Return plain data for the key of a run; with `strict`, raise on a flock without a written form."""
+        """Return the settings of an ensemble as plain data, of which the keys of stored runs are made."""
         plain_value: Any = None
         if (flock := self.flock) is not None:
             start = ("drawn" if callable(item) else item for item in (flock.q0, flock.p0))  # digested apart
@@ -105,7 +105,7 @@ def reference(function: Callable[..., Any]) -> str:
 
 
 def run_batch(request: Request, jobs: tuple[Job, ...]) -> tuple[Record, ...]:
-    """Make runs one after the other in this process."""
+    """Simulate and verify runs of an ensemble one after the other in this process."""
     if numerics_version() != request.mathematics:
         raise SolverError(
             f"a worker computes with version {numerics_version()} of the mathematics, expected {request.mathematics}: "
@@ -116,7 +116,7 @@ def run_batch(request: Request, jobs: tuple[Job, ...]) -> tuple[Record, ...]:
 
 
 def run_one(request: Request, job: Job) -> Record:
-    """Make one run; errors become part of its record."""
+    """Simulate and verify one run of an ensemble; an error becomes part of its record."""
     start_time = time.perf_counter()
     try:
         with restore_interrupts():
@@ -132,7 +132,7 @@ def run_one(request: Request, job: Job) -> Record:
 
 
 def build(request: Request, job: Job) -> Scenario:
-    """Return the scenario of a job."""
+    """Return the scenario of one run of an ensemble, built from the run's seed and options."""
     if request.flock is not None:
         return request.flock.scenario(job.seed, **dict(job.options))
     name = request.scenario

@@ -12,7 +12,7 @@ from flockana.ensemble.runs import SENDABLE
 
 
 def can_start_processes(request: Any) -> bool:
-    """Return whether processes can make the runs; warn and return False if this process must."""
+    """Return whether worker processes can make the runs; otherwise warn and return False."""
     # A started process imports the script that called. Without a guard that would run it again.
     reason = ""
     if (line := unguarded_line()) is not None:
@@ -27,7 +27,7 @@ def can_start_processes(request: Any) -> bool:
 
 
 def unguarded_line() -> int | None:
-    """Return the line of the running script that made the call, unless it is under a guard."""
+    """Return the script's line that called flockana, unless a test of `__name__` guards it."""
     for frame, line in walk_stack(None):
         if frame.f_code.co_name == "<module>" and frame.f_globals.get("__name__") in ("__main__", "__mp_main__"):
             path = Path(frame.f_code.co_filename)

@@ -15,7 +15,7 @@ class Runs(xarray.Dataset):  # type: ignore[no-untyped-call]  # of xarray
     __slots__ = ()
 
     def _table(self) -> tuple[tuple[str, ...], ...]:
-        """Return headings and rows without empty columns; empty for a part without seeds, claims or status."""
+        """Return headings and rows of the table of claims with success rates; () if data are missing."""
         if not ({"seed", "claim"} <= {*self.dims} and {"status", "run"} <= {*self.data_vars}):
             return ()
         columns = (column for column in zip(_HEADS, *share_cells(shares(self)), strict=True) if any(column[1:]))

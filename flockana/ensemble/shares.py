@@ -66,7 +66,7 @@ def shares(dataset: "xarray.Dataset", *, level: float = 0.95) -> "xarray.Dataset
 
 
 def share_cells(table: "xarray.Dataset") -> Iterator[tuple[str, str, str, str, str, str, str]]:
-    """Yield (parameters, claim, runs, verified, refuted, vacuous, inconclusive) of each checked claim."""
+    """Yield a table row per claim: parameters, claim, runs, % verified, % refuted, vacuous, inconclusive."""
     # Shares are in per cent, with their intervals; the last two are numbers of runs.
     axes = [str(name) for name in table.runs.dims if name != "claim"]
     for values in product(*(table[name].values.tolist() for name in axes)):

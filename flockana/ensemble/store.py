@@ -40,7 +40,7 @@ _INSERT = f"""INSERT INTO runs VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (key) DO UP
 
 
 class Store(AbstractContextManager["Store"]):
-    """File of runs by key; a context manager."""
+    """SQLite file of an ensemble's runs by key, used as a context manager."""
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = ensure_path(path, action="write")
@@ -109,7 +109,7 @@ class Store(AbstractContextManager["Store"]):
             return int(self._file.execute("SELECT COUNT(*) FROM runs").fetchone()[0])
 
     def read(self, keys: Iterable[str]) -> dict[str, Record]:
-        """Return the stored runs among the keys."""
+        """Return the stored records of runs by key, as far as the given keys are stored."""
         keys_left, records = list(keys), {}
         with self._explained():
             for start_index in range(0, len(keys_left), _AT_ONCE):
@@ -134,7 +134,7 @@ class Store(AbstractContextManager["Store"]):
             self._file.executemany(_INSERT, rows)
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the SQLite file of runs."""
         self._file.close()
 
     @contextmanager

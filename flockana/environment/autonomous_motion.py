@@ -73,7 +73,7 @@ class Forced(ABC):
 
     @property
     def feature(self) -> float | None:
-        """Time scale in which a spring bends the motion; None for a function."""
+        """Time scale of the motion if the force is a spring; None for any other function."""
         return self.force.feature if isinstance(self.force, Spring) else None
 
     def __getstate__(self) -> dict[str, Any]:

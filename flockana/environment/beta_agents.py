@@ -18,7 +18,7 @@ _OUTWARD = 1e-6  # how far beyond the surface a push ends, relative to its lengt
 
 
 class Kind(NamedTuple):
-    """Obstacles of one kind, as arrays for compiled sums."""
+    """Obstacles of one shape, such as spheres, as arrays for compiled sums over β-agents."""
 
     kernels: ObstacleKernels
     arrays: tuple[FloatArray, Any, FloatArray]  # parameters, where those of each obstacle start, and bounding balls
@@ -67,7 +67,7 @@ class ObstacleField:
         return power
 
     def potential_energy(self, q: FloatArray) -> float:
-        """Return Σ_i Σ_k ψ_β(‖q̂_ik − q_i‖_σ), unchecked."""
+        """Return the obstacles' potential Σ_i Σ_k ψ_β(‖q̂_ik − q_i‖_σ), unchecked."""
         total, par, panels, reach = 0.0, self.beta.par, self.beta.panels, self.beta.r
         for kernels, arrays in self.kinds:
             total += kernels.potential(q, arrays, par, panels, reach)

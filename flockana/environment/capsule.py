@@ -16,7 +16,7 @@ from flockana.kernels.obstacles import lift_obstacle, project_ball, turn_ball
 
 @register_jitable
 def _slide(q, p, par, foot, rate):  # type: ignore[no-untyped-def]
-    """Return the closest point of the segment, and its velocity; par = (a, b, R)."""
+    """Write a capsule's nearest axis point to an agent, and its velocity, to arrays; par = (a, b, R)."""
     m, length2, axial_part, speed = q.size, 0.0, 0.0, 0.0
     for c in range(m):
         side = par[m + c] - par[c]
@@ -89,7 +89,7 @@ class Capsule(Obstacle):
 
     @property
     def par(self) -> FloatArray:
-        """Parameters (a, b, R) for the kernels."""
+        """Segment ends a, b and radius R as one array, for compiled functions."""
         return np.array([*self.a, *self.b, self.radius])
 
     @property

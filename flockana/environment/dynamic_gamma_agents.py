@@ -63,7 +63,7 @@ class SystemTarget(Forced, Target):
 
     @property
     def feature(self) -> float | None:
-        """Time scale of a spring; infinite without one, None for a function."""
+        """Time scale of the γ-agent's motion under a spring; infinite if free, None for other forces."""
         if not isinstance(self.force, Spring):
             return None
         fastest = max(sqrt(abs(self.force.stiffness)), self.force.damping)

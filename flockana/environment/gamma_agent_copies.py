@@ -69,12 +69,12 @@ class Copies(ShortRepr, Forced):
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Shape (n, m) of the estimates."""
+        """Shape (n, m) of the array of all agents' copies of the γ-agent."""
         return len(self.q), len(self.q[0])
 
     @property
     def feature(self) -> float | None:
-        """Time scale in which a spring or the coupling bends the motion; None for a function."""
+        """Time scale of the copies' motion under a spring and their coupling; None for other forces."""
         inner_feature = super().feature
         return (
             None

@@ -54,7 +54,7 @@ class Obstacle(ShortRepr, ABC):
     @property
     @abstractmethod
     def par(self) -> FloatArray:
-        """Parameters in the order of the obstacle's scalar function."""
+        """Parameters of the obstacle as an array, in the order that compiled functions read them."""
 
     @property
     @abstractmethod
@@ -160,12 +160,12 @@ class Sphere(Obstacle):
 
     @property
     def par(self) -> FloatArray:
-        """Parameters (y, R) for the kernels."""
+        """Centre y and radius R of the sphere as one array, for compiled functions."""
         return np.array([*self.centre, self.radius])
 
     @property
     def ball(self) -> tuple[FloatArray, float]:
-        """Bounding ball (y, R)."""
+        """Bounding ball of a spherical obstacle, (centre y, radius R)."""
         return np.array(self.centre), self.radius
 
 
@@ -201,11 +201,11 @@ class Wall(Obstacle):
 
     @property
     def par(self) -> FloatArray:
-        """Parameters (y, a) for the kernels, with a of unit length."""
+        """Point y and unit normal a of the wall as one array, for compiled functions."""
         normal = np.array(self.normal) / max(map(abs, self.normal))
         return np.concatenate([self.point, normal / hypot(*normal)])
 
     @property
     def ball(self) -> tuple[FloatArray, float]:
-        """Bounding ball (y, ∞)."""
+        """Bounding ball of a wall, with centre y and infinite radius."""
         return np.array(self.point), inf

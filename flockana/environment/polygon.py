@@ -108,14 +108,14 @@ class SimplePolygon:
         return np.where(is_met, np.minimum(distances, depth_bound), distances)
 
     def enclosing_circle(self) -> Sphere:
-        """Return the smallest enclosing disc, the buffer zone of the conventional method."""
+        """Return the smallest disc that encloses the polygon."""
         circle = shapely.minimum_bounding_circle(self._shape)
         centre = (circle.centroid.x, circle.centroid.y)
         return Sphere(centre, float(np.linalg.norm(np.array(self.vertices) - centre, axis=1).max()))
 
 
 def _in_parts(function: Any, *rows: FloatArray) -> FloatArray:
-    """Return a function of many rows, evaluated in parts to limit shapely's memory."""
+    """Return the values of a function on many rows of arguments, in blocks to limit memory."""
     parts = [function(*(row[k : k + _ROWS] for row in rows)) for k in range(0, len(rows[0]), _ROWS)]
     return np.concatenate([np.empty(0), *parts])
 
@@ -182,12 +182,12 @@ class Polygon(Obstacle, SimplePolygon):
 
     @property
     def par(self) -> FloatArray:
-        """Vertices, counter-clockwise."""
+        """Vertices of the polygon as one array, counter-clockwise."""
         return np.array(self.vertices if self._shape.exterior.is_ccw else self.vertices[::-1]).ravel()
 
     @property
     def ball(self) -> tuple[FloatArray, float]:
-        """Bounding ball: (mean of the vertices, distance of the farthest)."""
+        """Bounding ball of the polygon: (mean of the vertices, distance of the farthest one)."""
         corners = np.array(self.vertices)
         centre = corners.mean(axis=0)
         return centre, float(np.linalg.norm(corners - centre, axis=1).max()) * (1.0 + 1e-12)

@@ -57,7 +57,7 @@ class TableTarget(Target):
 
     @cached_property
     def _path(self) -> Any:
-        """The path between the first sample and the last."""
+        """Cubic spline of the γ-agent's position between the first and the last sample."""
         from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
         if self.p is not None:
@@ -69,13 +69,13 @@ class TableTarget(Target):
         return self._path(min(max(t, self.t[0]), self.t[-1]))
 
     def rate(self, t: float) -> FloatArray:
-        """Return dq_r/dt, 0 beyond the table."""
+        """Return the γ-agent's velocity dq_r/dt, 0 outside the times of the table."""
         return self._path(t, 1) if self.t[0] <= t <= self.t[-1] else np.zeros(len(self.q[0]))
 
     consistent = True
 
     def acceleration_bound(self, t0: float) -> float | None:
-        """Return the largest ‖d²q_r/dt²‖ of pieces beyond t0; infinite if the velocity jumps there.
+        """Return the largest ‖d²q_r/dt²‖ from time t0 on; infinite at a jump of the velocity.
 
         Parameters
         ----------
@@ -93,5 +93,5 @@ class TableTarget(Target):
 
     @property
     def feature(self) -> float | None:
-        """Shortest time between two samples."""
+        """Shortest time between two samples of the γ-agent's path."""
         return float(np.diff(self.t).min())

@@ -20,17 +20,17 @@ class Harmonic(NamedTuple):
     factor: float = 1.0
 
     def position(self, t: float) -> FloatArray:
-        """Return q_r(t)."""
+        """Return the position q_r(t) of the γ-agent."""
         a, b, c, s, _ = self.terms
         return a + b * t + cos(self.omega * t) * c + sin(self.omega * t) * s
 
     def rate(self, t: float) -> FloatArray:
-        """Return dq_r/dt."""
+        """Return the velocity dq_r/dt of the γ-agent."""
         _, b, c, s, _ = self.terms
         return b + self.omega * (cos(self.omega * t) * s - sin(self.omega * t) * c)
 
     def acceleration(self, t: float) -> FloatArray:
-        """Return d²q_r/dt²."""
+        """Return the acceleration d²q_r/dt² of the γ-agent."""
         c, s = self.terms[2:4]
         return 0.0 - self.omega**2 * (cos(self.omega * t) * c + sin(self.omega * t) * s)
 
@@ -61,11 +61,11 @@ class Target(ShortRepr, ABC):
 
     @abstractmethod
     def position(self, t: float) -> FloatArray:
-        """Return q_r(t), shape (m,)."""
+        """Return the position q_r(t) of the γ-agent, shape (m,)."""
 
     @abstractmethod
     def rate(self, t: float) -> FloatArray:
-        """Return the true dq_r/dt, shape (m,)."""
+        """Return the true velocity dq_r/dt of the γ-agent, shape (m,)."""
 
     def state(self, t: float) -> tuple[FloatArray, FloatArray]:
         """Return (q_r(t), p_r(t)) as handed to the law, two vectors of shape (m,)."""
@@ -78,7 +78,7 @@ class Target(ShortRepr, ABC):
 
     @property
     def closed_path(self) -> Harmonic | None:
-        """`harmonic` of this motion; None where a subclass moves otherwise than the class that gives it."""
+        """The γ-agent's path in closed form; None if unknown or overridden by a subclass."""
         is_own = overrides_consistently(type(self), "harmonic", ("position", "rate", "state"))
         return self.harmonic if is_own else None
 
@@ -88,7 +88,7 @@ class Target(ShortRepr, ABC):
         return None
 
     def acceleration_bound(self, t0: float) -> float | None:
-        """Return a bound of ‖d²q_r/dt²‖ for all t >= t0, by closed form; infinite of a jump, None if unknown.
+        """Return a bound of ‖d²q_r/dt²‖ for all t >= t0; infinite at a jump, None if unknown.
 
         Parameters
         ----------
@@ -99,7 +99,7 @@ class Target(ShortRepr, ABC):
 
     @property
     def feature(self) -> float | None:
-        """Time within which the path and p_r have no hidden features; infinite for a straight path, None if unknown."""
+        """Time scale in which the γ-agent's path bends; infinite for a straight path, None if unknown."""
         return None
 
     @property

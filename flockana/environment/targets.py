@@ -24,7 +24,7 @@ _RESOLVED = 2.0**-26  # of |t|: a shorter step would lose half its digits in the
 
 
 def _harmonic(a: Any, *, b: Any = 0.0, c: Any = 0.0, s: Any = 0.0, e: Any = 0.0, omega: float = 0.0) -> Harmonic:
-    """Return a path from its summands; omitted ones are zero."""
+    """Return the path a + bt + c cos ωt + s sin ωt with offset e of p_r; omitted terms are zero."""
     return Harmonic(np.array([np.broadcast_to(item, np.shape(a)) for item in (a, b, c, s, e)], dtype=np.float64), omega)
 
 
@@ -349,7 +349,7 @@ class CallableTarget(Target):
         return self.state(t)[0]
 
     def rate(self, t: float) -> FloatArray:
-        """Return dq_r/dt by central difference, one-sided at the ends of the span."""
+        """Return the γ-agent's velocity dq_r/dt by central differences, one-sided at its span's ends."""
         step = max(_STEP * self.time, _RESOLVED * abs(t))
         if self.span[0] <= t - step and t + step <= self.span[1]:
             return (self.position(t + step) - self.position(t - step)) / (2.0 * step)

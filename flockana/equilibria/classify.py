@@ -17,7 +17,7 @@ MAX_SIZE = 60_000  # n m
 
 
 class Spectrum(NamedTuple):
-    """Eigenvalues off the rigid motions, with the numbers of rigid motions, negative and zero eigenvalues.
+    """Hessian eigenvalues off the rigid motions, and numbers of rigid motions, negative and zero ones.
 
     Of a large flock the eigenvalues are some only, with all negative and zero ones and the largest among them.
     """
@@ -29,7 +29,7 @@ class Spectrum(NamedTuple):
 
 
 def ensure_small(n: int, m: int, *, most: int = MAX_SIZE) -> None:
-    """Raise if the equilibrium of n agents would take many minutes."""
+    """Raise if n agents in m dimensions are too many to compute an equilibrium within minutes."""
     if n * m > most:
         raise ArgumentError(f"n = {n} agents in m = {m} dimensions: expected n m <= {most}, or it takes many minutes")
 
@@ -51,7 +51,7 @@ def spectrum(potential: Potential, q: FloatArray) -> Spectrum:
 
 
 def falling(potential: Potential, q: FloatArray) -> FloatArray | None:
-    """Return the unit direction (n, m) of steepest second-order descent, if there is one."""
+    """Return the unit direction (n, m) of the potential's lowest curvature; None if it is not negative."""
     local_landscape = landscape(potential, q)
     signs = local_landscape.curvatures().signs
     return descent_direction(local_landscape) if signs.size and signs[0] < 0 else None

@@ -50,7 +50,7 @@ def _frame(x: FloatArray) -> list[int]:
 
 
 def _images(candidates: list[Any], distances: FloatArray, wanted: FloatArray, tol: float) -> list[tuple[int, ...]]:
-    """Return tuples of agents with the frame's distances from the centre and from each other."""
+    """Return all tuples of agents whose distances from the centre and from each other are the given ones."""
     images: list[tuple[int, ...]] = [()]
     for k, options in enumerate(candidates):
         images = [
@@ -63,7 +63,7 @@ def _images(candidates: list[Any], distances: FloatArray, wanted: FloatArray, to
 
 
 def _maps(x: FloatArray, y: FloatArray, frame: list[int], image: tuple[int, ...], tree: KDTree, tol: float) -> bool:
-    """Return whether the isometry from the frame to its image maps all of x to y."""
+    """Return whether the isometry that maps given agents of x to given agents of y maps all of x to y."""
     # The frame spans x, so the map is fixed where it matters: what it does across a flat x moves nothing.
     u, _, vt = np.linalg.svd(x[frame].T @ y[list(image)])
     distance, nearest = tree.query(x @ u @ vt)

@@ -74,17 +74,17 @@ class Landscape:
 
     @cached_property
     def values(self) -> FloatArray:
-        """Eigenvalues off the rigid motions, rising; exact zeros where nothing is stiff."""
+        """Eigenvalues of the Hessian, rising, without those of rigid motions; all 0 if the Hessian is 0."""
         count = self.q.size - self.rigid.shape[1]
         return np.asarray(np.linalg.eigvalsh(self._matrix)[:count] if self.size else np.zeros(count))
 
     @cached_property
     def vectors(self) -> FloatArray:
-        """Eigenvectors of `values`, as columns."""
+        """Eigenvectors of the Hessian, as columns in the order of `values`, without rigid motions."""
         return np.linalg.eigh(self._matrix)[1][:, : self.values.size]
 
     def curvatures(self) -> Curvatures:
-        """Return eigenvalues with their signs; 0 where residual force or rounding leaves a sign open."""
+        """Return the Hessian's eigenvalues off the rigid motions, with signs that are 0 if undecidable."""
         magnitudes = np.abs(self.values)
         is_decided = np.zeros(magnitudes.size, dtype=bool)
         left = np.flatnonzero(magnitudes > self.rounding)
@@ -103,7 +103,7 @@ class Landscape:
         return Curvatures(self.values, signs, self.rounding)
 
     def change(self, k: int) -> float:
-        """Return the change of eigenvalue k on the way to the critical point; infinite if the point is far."""
+        """Return by how much eigenvalue k may change up to the critical point; infinite if that is far."""
         reach = 2.0 * self.force / max(abs(float(self.values[k])), self.rounding or np.inf)
         if not reach <= _REACH * self.length:
             return float("inf")
@@ -133,18 +133,18 @@ class Landscape:
         return self._keeps(reach, lowest_value)
 
     def _keeps_all(self, least: float) -> bool:
-        """Return whether no eigenvalue of at least this size changes by half on the way to the critical point."""
+        """Return whether no eigenvalue of size `least` or more changes by half up to the critical point."""
         return self._keeps(2.0 * self.force / least, least)
 
     def _keeps(self, reach: float, least: float) -> bool:
-        """Return whether the stiffness changes by less than half of `least` within `reach`."""
+        """Return whether the Hessian changes by less than half of `least` within the distance `reach`."""
         if reach > _REACH * self.length:
             return False
         turned = 8.0 * reach / self.length * self.size  # links turn by as much; lengths are what `_around` changes
         return turned + max(_row_sum(self.stiffness(x) - self.here) for x in self._around(reach)) <= 0.5 * least
 
     def _around(self, reach: float) -> list[FloatArray]:
-        """Return the configuration scaled up, scaled down, and shifted if translations matter."""
+        """Return the configuration scaled up and down, and shifted if shifts change the potential."""
         # Every distance above half of `length` changes by √2 `reach` at least, as those of links may.
         (n, m), factor = self.q.shape, np.sqrt(8.0) * reach / self.length
         centre = self.q.mean(axis=0)
@@ -168,7 +168,7 @@ def least_curvature(landscape: Landscape) -> tuple[float, float]:
 
 
 def descent_direction(landscape: Landscape) -> FloatArray:
-    """Return the unit direction (n, m) of steepest second-order descent."""
+    """Return the unit direction (n, m) of the potential's lowest curvature at a configuration."""
     # The same on every machine, in an eigenspace of several dimensions too: what a fixed vector has in it.
     is_lowest = landscape.values <= landscape.values[0] + 1e-6 * abs(landscape.values[0])
     basis = landscape.vectors[:, is_lowest]

@@ -85,7 +85,7 @@ def pairs_collapsed(potential: Potential, start: FloatArray, end: FloatArray) ->
 
 
 def anneal(potential: Potential, q: FloatArray, warm: float) -> FloatArray:
-    """Simulate Langevin's equation while the temperature falls to zero."""
+    """Return positions after simulating Langevin's equation with a temperature that falls to zero."""
     length_scale, scale = potential.pair.length, potential.force_scale
     step = _QUIET / sqrt(float(abs(potential.stiffness(q)).sum(axis=1).max()) or scale / length_scale)
     share_kept, rng, v = 1.0 - _DRAG, np.random.default_rng(0), np.zeros_like(q)

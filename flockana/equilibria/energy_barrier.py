@@ -79,7 +79,7 @@ def _starts(alpha: AlphaInteraction, n: int, m: int, count: int, seed: int) -> l
 
 
 def _most_linked_first(q: FloatArray, alpha: AlphaInteraction) -> FloatArray:
-    """Return positions with the agent of most neighbours first, the cheapest one to double."""
+    """Return positions sorted by the number of neighbours, the agent with the most neighbours first."""
     links = np.zeros(len(q), dtype=np.int64)
     for i, j in pair_blocks(q, alpha.r):
         links += np.bincount(i, minlength=len(q)) + np.bincount(j, minlength=len(q))

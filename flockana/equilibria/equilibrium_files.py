@@ -57,7 +57,7 @@ def read_equilibrium(path: str | Path) -> Equilibrium:
 
 
 def _read(path: str | Path) -> dict[str, Any]:
-    """Return a file's data; raise unless it holds an equilibrium."""
+    """Return the data of an equilibrium file; raise unless the file is JSON of the equilibrium format."""
     try:
         data = read_json(read_text_file(path))
     except FlockanaError as error:
@@ -76,7 +76,7 @@ def _not_an_equilibrium(path: str | Path, reason: object) -> FileError:
 
 
 def _compare(equilibrium: Equilibrium, data: dict[str, Any]) -> None:
-    """Raise unless kind, links, modes, energy and spectrum agree with the file."""
+    """Raise unless an equilibrium's kind, links, rigid modes, energy and spectrum agree with its file."""
     exact = {"kind": equilibrium.kind, "links": len(equilibrium.links), "rigid_modes": equilibrium.rigid_modes}
     for name, value in exact.items():
         if data[name] != value:

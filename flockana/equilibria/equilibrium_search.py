@@ -23,7 +23,7 @@ _LEVEL = 1e-4  # of c1α ψ_α(r_α): energies this close may be those of one eq
 
 
 def random_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, density: float = 1.3) -> list[FloatArray]:
-    """Return starts uniform in a ball, denser than a lattice of spacing d by the given factor."""
+    """Return random configurations of agents uniform in a ball, with `density` agents per volume d^m."""
     rng = np.random.default_rng([n, m, seed])
     volume = {1: 2.0, 2: np.pi, 3: 4.0 * np.pi / 3.0}[m]
     radius = d * (n / (ensure_positive("density", density) * volume)) ** (1.0 / m)
@@ -36,7 +36,7 @@ def random_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, densit
 
 
 def lattice_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, noise: float = 0.05) -> list[FloatArray]:
-    """Return starts grown agent by agent at random free sites of a lattice, then perturbed."""
+    """Return configurations grown agent by agent at random free sites of a lattice, then perturbed."""
     # Of three random free places the one with the most neighbours is taken: compact patches, but not the same each
     # time.
     rng = np.random.default_rng([n, m, seed, 1])
@@ -63,7 +63,7 @@ def lattice_starts(n: int, m: int, d: float, count: int, *, seed: int = 0, noise
 
 @dataclass(frozen=True)
 class Distinct:
-    """Equilibrium found by a search, with its number of hits."""
+    """Equilibrium found by a search, with the number of starts that ended there."""
 
     equilibrium: Equilibrium  # the first of those that are the same but for a rigid motion and the numbering
     count: int  # how many starts ended there
@@ -81,7 +81,7 @@ class Search:
 
     @property
     def best(self) -> Equilibrium:
-        """Equilibrium of lowest energy."""
+        """Equilibrium of lowest energy among those found by a search."""
         if not self.found:
             raise SolverError(
                 f"none of {self.starts} starts led to an equilibrium; the first failure: {self.failures[:1]}"

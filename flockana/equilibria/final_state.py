@@ -89,7 +89,7 @@ def rigid_motions(q: FloatArray) -> FloatArray:
 
 
 def surroundings(law: Any, q: FloatArray, *, force: float = 0.0) -> Landscape | None:
-    """Return the structural potential about a configuration; None where its Hessian is too large."""
+    """Return the structural potential's Hessian at a configuration as a `Landscape`; None if too large."""
     if q.size > DENSE_LIMIT:
         return None
     scales = law.scales

@@ -23,7 +23,7 @@ _ONE_AT_A_TIME = RLock()  # before scipy 1.17 two LSODAs in threads of one proce
 
 @dataclass(frozen=True)
 class GradientLimit:
-    """Limit of the gradient flow."""
+    """Limit of the gradient flow q' = −∇U of a potential: configuration, residual force and flow time."""
 
     q: FloatArray  # shape (n, m)
     force: float  # largest residual force over that of the law's `scales`

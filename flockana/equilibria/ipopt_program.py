@@ -32,7 +32,7 @@ _TOL = 1e-10
 
 
 class _Callback(ca.Callback):
-    """Base class of CasADi functions of the program's unknown, computed by kernels."""
+    """Base class of CasADi functions of the nonlinear program's unknown vector x, evaluated by kernels."""
 
     def __init__(self, name: str, program: Program) -> None:
         ca.Callback.__init__(self)
@@ -44,14 +44,14 @@ class _Callback(ca.Callback):
 
 
 class _Value(_Callback):
-    """Potential energy in the program's units."""
+    """CasADi function that evaluates the potential energy in the nonlinear program's units."""
 
     def eval(self, arguments: Any) -> list[float]:
         return [self._program.value(np.asarray(arguments[0]).ravel())]
 
 
 class _Derivatives(_Callback):
-    """Gradient and upper triangle of the Hessian in the program's units."""
+    """CasADi function that evaluates the potential's gradient and the upper triangle of its Hessian."""
 
     def __init__(self, program: Program) -> None:
         self._at = _upper_triangle(program.shape, program.pairs)
@@ -130,7 +130,7 @@ class Program:
     def solve(
         self, q0: FloatArray, *, basis: FloatArray | None = None, reach: float = np.inf, max_iter: int = 3000
     ) -> tuple[FloatArray, bool, str]:
-        """Minimise from q0 and return (positions, whether IPOPT succeeded, IPOPT's status)."""
+        """Minimise the potential from q0; return (positions, whether IPOPT succeeded, IPOPT's status)."""
         start = q0.ravel() / self.d
         basis = self.potential.symmetries(q0) if basis is None else basis
         fixed_motions = basis.T @ start
@@ -142,7 +142,7 @@ class Program:
         return self.d * x.reshape(self.shape), bool(stats["success"]), str(stats["return_status"])
 
     def _solver(self, max_iter: int) -> Any:
-        """Return IPOPT with a limit of iterations (cached)."""
+        """Return the IPOPT solver of the nonlinear program with a limit of iterations (cached)."""
         if max_iter not in self._solvers:
             limits: Any = {"ipopt.tol": _TOL, "ipopt.max_iter": max_iter, "iteration_callback": self._watch}
             options = _QUIET | _BOX | limits | self._exact

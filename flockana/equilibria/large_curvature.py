@@ -21,11 +21,11 @@ _GAP = 1e-9  # of the largest row sum: eigenvalues that differ by less cannot be
 
 
 class LargeLandscape(Landscape):
-    """`Landscape` with only the smallest and largest eigenvalues."""
+    """Hessian of a large flock's potential, of which only smallest and largest eigenvalues are computed."""
 
     @cached_property
     def values(self) -> FloatArray:
-        """The smallest eigenvalues off the rigid motions, rising, and the largest."""
+        """Smallest eigenvalues of the Hessian off the rigid motions, rising, and its largest eigenvalue."""
         return self._extremes[0]
 
     @cached_property
@@ -53,7 +53,7 @@ class LargeLandscape(Landscape):
         )
 
     def _count(self, bound: float) -> int:
-        """Return the number of eigenvalues off the rigid motions below a positive bound."""
+        """Return the number of the Hessian's eigenvalues below a positive bound, rigid motions excluded."""
         return Elimination(self._shifted(-bound), self.q, keep=False).negative - int(self.rigid.shape[1])
 
     def _shifted(self, by: float) -> Any:
@@ -62,11 +62,11 @@ class LargeLandscape(Landscape):
         return (self.here + by * eye_array(self.q.size)).tocsr()
 
     def _off_rigid(self, x: FloatArray) -> FloatArray:
-        """Remove the rigid-motion parts of vectors."""
+        """Return vectors less their projections on the rigid motions."""
         return x - self.rigid @ (self.rigid.T @ x)
 
     def _smallest(self, count: int) -> tuple[FloatArray, FloatArray]:
-        """Return eigenvalues nearest to a shift below zero, rising, by Rayleigh quotients."""
+        """Return the Hessian's eigenvalues nearest to a shift below zero, rising, with their eigenvectors."""
         shift = _BELOW * self.size
         solve = Elimination(self._shifted(shift), self.q).solve
         return self._lanczos(lambda x: self._off_rigid(solve(self._off_rigid(x))), count, "LM")

@@ -37,7 +37,7 @@ class CollapseDiagram:
     kinds: tuple[tuple[str, ...], ...]  # kind of each equilibrium, ``"failed"`` where there is none
 
     def onset(self) -> FloatArray:
-        """Return the least collapsing ratio of the diagram for each size; NaN without collapse."""
+        """Return, for each flock size, the least ratio c1γ/c1α at which agents coincide; NaN if none."""
         return np.array([self.ratios[row > 0][0] if (row > 0).any() else np.nan for row in self.coincident])
 
 
@@ -87,7 +87,7 @@ def natural_ratio(alpha: AlphaInteraction) -> float:
 def threshold(
     collapses: Callable[[float], bool], *, lowest: float = 0.01, factor: float = _FACTOR, halvings: int = 4
 ) -> tuple[float, float]:
-    """Return (largest safe ratio, smallest collapsing ratio), found by bisection.
+    """Return the largest ratio c1γ/c1α without collapse and the smallest with collapse, found by bisection.
 
     From below, since far above the threshold agents may rest apart again. Both ends of the bracket have been tried; it
     stays wider where a try inside it fails (near the threshold a flock settles slowly).

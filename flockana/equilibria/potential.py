@@ -53,18 +53,18 @@ class Potential:
 
     @property
     def force_scale(self) -> float:
-        """Unit of force: the law's, or else the pair law's."""
+        """Unit of force of the law, or else the pair law's largest force times its gain."""
         unit_force = self.law.scales
         return self.gain * self.pair.strength if unit_force is None else unit_force.force
 
     @property
     def pairs(self) -> PairTerm:
-        """The pair term of the law."""
+        """Pair term of the law: the sum of forces between agents."""
         return self.law.term(PairTerm)  # type: ignore[return-value]  # ensured
 
     @property
     def pair(self) -> PairInteraction:
-        """The pair law among agents."""
+        """Pair law among agents, from the law's pair term."""
         return self.pairs.pair
 
     @property
@@ -74,7 +74,7 @@ class Potential:
 
     @property
     def target(self) -> FloatArray | None:
-        """Position q_r(t), or None without a γ-agent."""
+        """Position q_r(t) of the γ-agent at the potential's time; None without a γ-agent."""
         return None if self.law.target is None else np.asarray(self.law.target.state(self.t)[0], dtype=float)
 
     def energy(self, q: FloatArray) -> float:
@@ -82,7 +82,7 @@ class Potential:
         return float(self.law.hamiltonian(self.t, q, np.zeros_like(q)))
 
     def listed_energy(self, q: FloatArray, pairs: LinkArray) -> float:
-        """Return the energy of listed pairs less their far potential, without a large constant to round."""
+        """Return the energy, of listed pairs less their far potential, so that no large constant rounds it."""
         link_lengths = np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1)
         total = self.gain * float(np.sum(self.pair.energy(link_lengths) - self.pair.far_potential))
         other_terms = (term for term in self.law.terms if term is not self.pairs and not term.idle)
@@ -99,7 +99,7 @@ class Potential:
         return push - pull.gains.drag * p_r
 
     def residual(self, q: FloatArray) -> float:
-        """Return the largest force on an agent over `force_scale`."""
+        """Return the largest force on an agent in units of `force_scale`."""
         return float(np.linalg.norm(self.force(q), axis=1).max()) / self.force_scale
 
     def stiffness(self, q: FloatArray) -> Any:
@@ -127,7 +127,7 @@ def inside_obstacle(law: Law, q: FloatArray) -> bool:
 
 
 def _free_rotations(obstacles: Sequence[Obstacle], centre: FloatArray, length: float) -> list[FloatArray]:
-    """Return the skew matrices of the rotations that leave every obstacle in place."""
+    """Return the skew matrices of the rotations about a centre that leave every obstacle in place."""
     # A sphere whose centre is within rounding of q_r, beside the law's length, has no axis.
     from scipy.linalg import null_space
 

@@ -90,7 +90,7 @@ class Equilibrium:
     message: str
 
     def facts(self) -> dict[str, str]:
-        """Return the rows of the table that a notebook shows."""
+        """Return the equilibrium's properties in words, as the rows of the table that a notebook shows."""
         eigenvalue_text = f"{self.hessian_eigenvalues[0]:.4g}" if self.hessian_eigenvalues.size else "none"
         return {
             "law": self.law.title,
@@ -121,7 +121,7 @@ class Equilibrium:
 
     @property
     def curvature(self) -> float:
-        """Smallest eigenvalue off the rigid motions over the largest in modulus; NaN without one."""
+        """Hessian's smallest eigenvalue off the rigid motions over the largest in modulus; NaN without one."""
         values = self.hessian_eigenvalues
         return float(values[0] / np.abs(values).max()) if values.size and values.any() else float("nan")
 
@@ -182,7 +182,7 @@ def find_equilibrium(
 
 
 def finish(potential: Potential, q: FloatArray, converged: bool, message: str, *, strict: bool = True) -> Equilibrium:
-    """Return a solver's result refined by Newton's method and classified; raise if it is no equilibrium."""
+    """Return a solver's result as an `Equilibrium`, refined and classified; raise if it is none."""
     q = polish(potential, q) if converged and q.size <= _LARGEST else q  # the descent has polished what is larger
     pull = potential.law.term(Navigation)
     is_unpulled = pull is not None and pull.gains.c1_gamma == 0.0
@@ -233,7 +233,7 @@ def all_pairs(n: int) -> LinkArray:
 
 
 def _minimise(potential: Potential, q: FloatArray, max_iter: int) -> tuple[FloatArray, bool, str]:
-    """Minimise in a box about the start, then in boxes about each solution, until one lies inside its box."""
+    """Minimise a potential in boxes about successive solutions, until a solution lies inside its box."""
     # The box is so small that no pair outside the list can come within range, and IPOPT's long steps along soft
     # directions cannot scatter the flock. A point from which V falls is left along its most negative direction.
     from flockana.equilibria.ipopt_program import Program
@@ -262,7 +262,7 @@ def _minimise(potential: Potential, q: FloatArray, max_iter: int) -> tuple[Float
 
 
 def _root(potential: Potential, q: FloatArray, max_iter: int) -> tuple[FloatArray, bool, str]:
-    """Find a zero of the gradient by Levenberg-Marquardt, with the gauge as extra equations."""
+    """Find a zero of a potential's gradient by Levenberg-Marquardt, with rigid motions fixed by equations."""
     from scipy.optimize import least_squares
 
     basis, scale, d = potential.symmetries(q), potential.force_scale, potential.pair.length
@@ -281,7 +281,7 @@ def _root(potential: Potential, q: FloatArray, max_iter: int) -> tuple[FloatArra
 
 
 def polish(potential: Potential, q: FloatArray) -> FloatArray:
-    """Refine by Newton's method with the law's stiffness; a small shift keeps soft modes finite."""
+    """Refine an equilibrium by Newton's method with the Hessian; a small shift keeps soft modes finite."""
     from scipy.sparse import block_array, csc_array, eye_array
     from scipy.sparse.linalg import splu
 

@@ -1,4 +1,4 @@
-"""Answers to a case of the explorer's page, in order of computation."""
+"""Results computed for a case of the explorer's page, sent in order of computation."""
 
 from collections.abc import Callable, Iterator
 from functools import cache, partial
@@ -33,7 +33,7 @@ _SQUEEZED = 400  # agents up to which the collapse threshold is sought, in the p
 
 
 def answer(asked: Any, send: Send, *, limit: float, cancelled: Callable[[], bool]) -> None:
-    """Run a case and send its results; stop at the first error, which is sent."""
+    """Simulate a case of the explorer's page and send its results; stop at the first error, which is sent."""
     try:
         case = asked if isinstance(asked, Case) else Case.of(asked)
         parts = case.parts
@@ -52,7 +52,7 @@ def answer(asked: Any, send: Send, *, limit: float, cancelled: Callable[[], bool
 
 
 def form(case: Case, parts: Start) -> dict[str, Any]:
-    """Return the form of a start: its parameters, and the equivalent Python."""
+    """Return the data of the page's form: the law's parameters, the start, and equivalent Python code."""
     default_values = {number.path: number.value for number in numbers(case.start().law)}
     number_rows = [
         {"path": item.path, "value": item.value, "usual": default_values.get(item.path), "place": item.place}
@@ -75,7 +75,7 @@ def form(case: Case, parts: Start) -> dict[str, Any]:
 
 
 def _idle(law: Any) -> tuple[str, ...]:
-    """Return the paths of parameters that have no effect on a law, such as unused gains."""
+    """Return the names of a law's gains that have no effect, as it has no γ-agent or no obstacles."""
     idle_gains = () if law.target is not None else ("c1_gamma", "c2_gamma")
     return idle_gains if law.obstacles else (*idle_gains, "c1_beta", "c2_beta")
 

@@ -51,7 +51,7 @@ def _listed(item: Any, path: tuple[str, ...]) -> Iterator[Number]:
 
 
 def tree_of(law: Any, changes: Mapping[str, Any]) -> Tree:
-    """Return changes by path as a tree, checked against the values they replace."""
+    """Return changes of a law's parameters, given by dotted path, as a tree; raise on invalid values."""
     values = {number.path: number.value for number in numbers(law)} if changes else {}
     tree: Tree = {}
     for path, value in changes.items():
@@ -75,7 +75,7 @@ def _convert(path: str, old: Value, given: Any) -> Value:
 
 
 def changed(item: Any, tree: Tree) -> Any:
-    """Return a law with other parameters, checked by its classes."""
+    """Return a law with changed parameters, validated by its class."""
     if not isinstance(tree, dict):
         return tree
     if isinstance(item, tuple):
@@ -86,7 +86,7 @@ def changed(item: Any, tree: Tree) -> Any:
 
 
 def expression(name: str, item: Any, tree: Tree) -> str:
-    """Return a Python expression of the changed law."""
+    """Return a Python expression that builds a law with changed parameters from the law of a given name."""
     if not isinstance(tree, dict):
         return repr(tree)
     if not tree:

@@ -17,7 +17,7 @@ _LAST_PORT = 65535
 
 
 def save_case(case: Scenario | Trajectory, folder: str) -> dict[str, str]:
-    """Return the page's first case: a run, or a scenario's run, saved in a folder."""
+    """Return the case that the explorer's page opens with: a run, or a scenario's run, saved in a folder."""
     run, name = (case, "run") if isinstance(case, Trajectory) else (case.run(), case.name.replace(" ", "-"))
     return {"kind": "file", "name": str(run.save(Path(folder) / f"{name}.nc"))}
 

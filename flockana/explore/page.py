@@ -1,4 +1,4 @@
-"""HTML of the explorer's page, with its scripts and styles inlined."""
+"""HTML page of the explorer, with its scripts and styles inlined."""
 
 import json
 from functools import cache
@@ -18,7 +18,7 @@ def _text(name: str) -> str:
 
 
 def page(first: dict[str, Any], nonce: str) -> str:
-    """Return the HTML of the page."""
+    """Return the HTML of the explorer's page, with its scripts and styles inlined."""
     scenarios: dict[str, dict[str, str]] = {}  # titles by source and name
     for entry in scenario_entries():
         scenarios.setdefault(entry["source"], {})[entry["name"]] = entry["title"]

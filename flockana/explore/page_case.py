@@ -41,7 +41,7 @@ class Case:
 
     @classmethod
     def of(cls, asked: Any) -> Self:
-        """Return the case described by a message of the page."""
+        """Return the explorer's case that a message of the page describes."""
         if not isinstance(asked, Mapping) or set(asked) - set(_KEYS) or not {"kind", "name"} <= set(asked):
             raise ArgumentError(f"a case has kind, name and some of {', '.join(_KEYS[2:])}: got {str(asked)[:80]}")
         moves = asked.get("moved") or {}
@@ -50,7 +50,7 @@ class Case:
         return cls(**{**asked, "changes": asked.get("changes") or {}, "moved": {int(k): moves[k] for k in moves}})
 
     def start(self) -> Start:
-        """Return the start without changes."""
+        """Return the law, flock and time span of an explorer's case without the user's changes."""
         if self.kind == "file":
             return from_file(self.name)
         if self.kind == "law":
@@ -59,7 +59,7 @@ class Case:
 
     @property
     def parts(self) -> Start:
-        """Return the changed start and its Python; a value refused by the law raises."""
+        """Return law, flock, time span and Python code of the case with its changes; raise if refused."""
         start = self.start()
         tree, lines = tree_of(start.law, self.changes), list(start.lines)
         law, q0 = changed(start.law, tree), start.q0.copy()

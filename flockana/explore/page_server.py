@@ -1,4 +1,4 @@
-"""Local web server: one page, one socket per tab, one worker process per socket."""
+"""Explorer's local web server: one page, one web socket per tab, one worker process per socket."""
 
 import asyncio
 import hmac
@@ -35,7 +35,7 @@ _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'nonce-{0}'
 
 
 class Process:
-    """Worker process whose messages reach the server's thread."""
+    """Worker process of the explorer, whose messages are handed to the web server's thread."""
 
     def __init__(self, limit: float) -> None:
         context = get_context("spawn")
@@ -61,14 +61,14 @@ class Process:
         self.deliver(message)  # to the tab that owns the process now
 
     def end(self) -> None:
-        """End the process at once."""
+        """End the explorer's worker process at once."""
         self.deliver = lambda message: None
         self.process.kill()
 
 
 @dataclass
 class Server:
-    """Server state shared by all tabs."""
+    """State of the explorer's web server, shared by all tabs."""
 
     token: str  # requests without it are refused
     first: dict[str, Any]  # the case that a page begins with
@@ -89,13 +89,13 @@ class Server:
             self.spare = Process(self.limit)
 
     def end(self) -> None:
-        """End all processes."""
+        """End all worker processes of the explorer's web server."""
         for process in (self.spare, *(tab.process for tab in self.tabs)):
             if process is not None:
                 process.end()
 
     def admitted(self, case: Any) -> Any:
-        """Return a case; raise on a file other than the explorer's own."""
+        """Return a case; raise if it names a file other than the one that the explorer was started with."""
         if case.get("kind") == "file" and case != {**case, "kind": self.first["kind"], "name": self.first["name"]}:
             raise ArgumentError("expected the file that the explorer was started with")
         return case
@@ -109,7 +109,7 @@ class Server:
 
 class _Guarded(RequestHandler):
     def prepare(self) -> None:
-        """Reject requests without the token."""
+        """Reject web requests without the explorer's token."""
         self.server: Server = self.application.settings["explorer"]
         if not self.server.admits(self):
             raise HTTPError(403)
@@ -117,7 +117,7 @@ class _Guarded(RequestHandler):
 
 class _Page(_Guarded):
     def get(self) -> None:
-        """Answer with the page."""
+        """Answer a web request with the explorer's page."""
         nonce = secrets.token_urlsafe(16)
         self.set_header("Content-Security-Policy", _POLICY.format(nonce))
         self.set_header("Referrer-Policy", "no-referrer")
@@ -125,7 +125,7 @@ class _Page(_Guarded):
         self.finish(page(self.server.first, nonce))
 
     def write_error(self, status_code: int, **_: Any) -> None:
-        """Write the error in one line."""
+        """Write the error of a web request in one line."""
         error_text = "wrong or missing token: open the address that flockana explore printed"
         self.finish(error_text if status_code == 403 else f"{status_code}")
 
@@ -144,14 +144,14 @@ class _Run(_Guarded):
 
 
 class _Tab(_Guarded, WebSocketHandler):
-    """Tab with its own process, which answers the newest question."""
+    """Web socket of a browser tab, with its own worker process that answers the newest question."""
 
     process: Process | None = None
     number, begun, asked = 0, 0, None
     analysing, silent = False, 0
 
     def open(self, *_: Any) -> None:
-        """Take a process for a new page."""
+        """Take a worker process for a newly opened page."""
         if len(self.server.tabs) >= _TABS:
             self.close(4000, f"{_TABS} tabs are open: close one")
             return
@@ -166,7 +166,7 @@ class _Tab(_Guarded, WebSocketHandler):
         return process
 
     def on_message(self, message: str | bytes) -> None:
-        """Send a question to the process."""
+        """Send a question of the page to the worker process."""
         try:
             request = json.loads(message)
             number, case = int(request["number"]), self.server.admitted(request["case"])
@@ -189,7 +189,7 @@ class _Tab(_Guarded, WebSocketHandler):
             process.pipe.send((self.number, self.asked))
 
     def _replace_if_unresponsive(self, number: int, at_once: bool) -> None:
-        """Replace a process that ignores a newer question, once another is ready."""
+        """Replace a worker process that ignores a newer question, once another is ready."""
         spare_worker = self.server.spare
         if at_once and not (spare_worker is not None and spare_worker.ready):
             return
@@ -198,7 +198,7 @@ class _Tab(_Guarded, WebSocketHandler):
             self._ask()
 
     def deliver(self, message: Any) -> None:
-        """Send a message of the process if it answers the newest question."""
+        """Send a worker process's message to the page if it answers the newest question."""
         if message is None:
             text = "the process of this run ended: too little memory, or an error that the terminal shows"
             self._say({"number": self.number, "kind": "error", "text": text})
@@ -224,7 +224,7 @@ class _Tab(_Guarded, WebSocketHandler):
             self.on_close()
 
     def on_close(self) -> None:
-        """End the process of a closed page."""
+        """End the worker process of a closed page."""
         self.server.tabs.discard(self)
         if self.process is not None:
             self.process.end()
@@ -232,7 +232,7 @@ class _Tab(_Guarded, WebSocketHandler):
 
 
 def kept_token() -> str:
-    """Return this user's stored token, or a temporary one where nothing can be stored."""
+    """Return the user's stored token of the explorer, or a temporary one where nothing can be stored."""
     path = Path.home() / ".flockana" / "explore-token"
     try:
         path.parent.mkdir(mode=0o700, exist_ok=True)
@@ -246,7 +246,7 @@ def kept_token() -> str:
 
 
 async def serve(server: Server, port: int, opened: Callable[[str], None]) -> None:
-    """Serve until cancelled."""
+    """Run the explorer's web server until it is cancelled."""
     routes = [("/", _Page), ("/socket", _Tab), ("/run", _Run)]
     application = Application(routes, explorer=server, websocket_max_message_size=_QUESTION, websocket_ping_interval=20)
     http = HTTPServer(application)

@@ -1,4 +1,4 @@
-"""Starts of the page: scenarios, laws with random flocks, and files, with equivalent Python."""
+"""Starts of the explorer's page: scenarios, laws with random flocks, and files, with equivalent Python."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -28,7 +28,7 @@ FILES = (".nc", ".json")
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """Law, flock and time span of a case before changes."""
+    """Law, flock and time span of a case of the explorer's page, before the user's changes."""
 
     title: str
     law: Any
@@ -46,7 +46,7 @@ class Start:
 
 
 def law_names() -> tuple[str, ...]:
-    """Return laws that can be tried on a random flock.
+    """Return the names of the laws that the explorer can try on a random flock.
 
     Examples
     --------
@@ -58,14 +58,14 @@ def law_names() -> tuple[str, ...]:
 
 @cache
 def _tried_laws() -> dict[str, Candidate]:
-    """Return the laws that can be tried, by the name of their class."""
+    """Return the laws that the explorer can try on a random flock, by the name of their class."""
     targeted = Candidate(Algorithm2, span=20.0), Candidate(Algorithm3, span=40.0)
     by_name = {item.law.__name__: item for item in (*targeted, *candidates().values())}
     return {name: by_name[name] for name in sorted(by_name)}
 
 
 def _law(name: str, m: int, side: float) -> tuple[Any, str]:
-    """Return a law with default parameters, a γ-agent and a ball if needed, and its Python code."""
+    """Return a law with default parameters, with the γ-agent and sphere that it needs, and its Python code."""
     here = (0.0,) * m
     there, between = (2.0 * side, *here[1:]), (side, *here[1:])
     if name == "Algorithm2":
@@ -78,7 +78,7 @@ def _law(name: str, m: int, side: float) -> tuple[Any, str]:
 
 
 def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
-    """Return a law with default parameters, and agents at random in a square."""
+    """Return the start of a law with default parameters, and of n agents at random in a square or cube."""
     ensure_known("law", name, law_names())
     n, m = ensure_count("n", n), ensure_dimension(m)
     law_length, end = _tried_laws()[name].length, _tried_laws()[name].span
@@ -100,7 +100,7 @@ def from_law(name: str, *, n: int = _FLOCK, m: int = 2, seed: int = 0) -> Start:
 
 @lru_cache(maxsize=8)
 def from_scenario(name: str, *, seed: int = 0) -> Start:
-    """Return the case of a scenario of the catalogue."""
+    """Return the start of a scenario of the catalogue, for the explorer's page."""
     item = scenario(name, seed)
     lines = (
         f"item = fl.scenario({name!r}, seed={item.seed})",
@@ -113,7 +113,7 @@ def from_scenario(name: str, *, seed: int = 0) -> Start:
 
 @lru_cache(maxsize=1)
 def from_file(path: str) -> Start:
-    """Return the case of a saved run (.nc), or a counterexample (.json)."""
+    """Return the start of a saved run (.nc) or of a counterexample (.json), for the explorer's page."""
     if Path(path).suffix == ".json":
         case = Counterexample.load(path)
         lines: tuple[str, ...] = (

@@ -23,7 +23,7 @@ class Worker:
         self.changed = threading.Condition()
 
     def read(self) -> None:
-        """Receive questions until the pipe closes."""
+        """Receive the page's questions until the pipe closes."""
         while True:
             try:
                 question = self.pipe.recv()
@@ -36,7 +36,7 @@ class Worker:
                 _thread.interrupt_main()
 
     def answer_all(self) -> None:
-        """Answer questions until the process ends."""
+        """Answer the page's newest questions until the process ends."""
         from flockana.explore.case_answers import answer
 
         while True:
@@ -64,7 +64,7 @@ class Worker:
 
 
 def work(pipe: Connection, limit: float) -> None:
-    """Answer questions until the pipe closes."""
+    """Answer an explorer page's questions in a worker process until its pipe closes."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
     worker = Worker(pipe, limit)
     _warm()

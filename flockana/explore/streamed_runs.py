@@ -26,7 +26,7 @@ class TooLargeError(ArgumentError):
 
 
 def ensure_small(parts: Start) -> None:
-    """Raise before a run of more agents than a page can show."""
+    """Raise if a flock has more agents than the explorer's page can show."""
     n, m = parts.q0.shape
     if n > AGENTS:
         megabytes = 8e-6 * 2 * n * m * _FRAMES
@@ -37,7 +37,7 @@ def ensure_small(parts: Start) -> None:
 
 
 def watched(parts: Start, show: Callable[[bytes], None], *, limit: float, cancelled: Callable[[], bool]) -> Trajectory:
-    """Return the run, streaming frames while it is computed."""
+    """Simulate a case and return its run, sending frames to the page while it is computed."""
     samples: list[Sample] = []
     span = parts.t_span[1] - parts.t_span[0]
     started, due, pause = time.perf_counter(), 0.0, _FIRST
@@ -77,7 +77,7 @@ def watched(parts: Start, show: Callable[[bytes], None], *, limit: float, cancel
 
 
 def _thin(samples: list[Sample], law: Any) -> Trajectory:
-    """Return the run so far with some of its samples left out."""
+    """Return an unfinished run as a `Trajectory`, with some of its samples left out."""
     shown_samples = [samples[k] for k in kept(len(samples), _FRAMES)]
     t, q, p, u = (np.array([getattr(sample, name) for sample in shown_samples]) for name in "tqpu")
     extra_series = {key: np.array([sample.extra[key] for sample in shown_samples]) for key in shown_samples[0].extra}
@@ -85,7 +85,7 @@ def _thin(samples: list[Sample], law: Any) -> Trajectory:
 
 
 def shown(run: Trajectory, show: Callable[[bytes], None]) -> Trajectory:
-    """Return a whole run for display, thinned if it is long."""
+    """Send a run to the explorer's page, thinned if it is long, and return it unchanged."""
     most = kept(len(run.t), max(_SAMPLES, _NUMBERS // (2 * run.n * run.m)))
     extra_series = {name: series[most] for name, series in run.extra.items()}
     some = replace(run, t=run.t[most], q=run.q[most], p=run.p[most], u=run.u[most], extra=extra_series, between=None)

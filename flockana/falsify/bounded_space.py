@@ -42,12 +42,12 @@ class Space:
 
     @property
     def dimension(self) -> int:
-        """Number of coordinates."""
+        """Number of coordinates of the search space."""
         return len(self.low) + len(self.parameters)
 
     @property
     def start(self) -> FloatArray:
-        """Point nearest to the scenario's own start, shape (D,)."""
+        """Point of the unit cube nearest to the scenario's own start, shape (D,)."""
         state = {"q": self.scenario.q0, "p": self.scenario.p0}
         x = np.concatenate([np.empty(0), *(state[name].ravel() for name in self.vary)])
         values = (float(law_parameter(self.scenario.law, name)) for name in self.parameters)
@@ -55,7 +55,7 @@ class Space:
         return np.clip(np.concatenate([(x - self.low) / (self.high - self.low), shares]), 0.0, 1.0)
 
     def case(self, point: FloatArray) -> Scenario:
-        """Return the scenario with the state and the parameters of a point.
+        """Return the scenario with the initial state and the law parameters of a point of the search space.
 
         Parameters
         ----------
@@ -156,7 +156,7 @@ def _range(law: Any, name: str, given: Any) -> tuple[float, float]:
 
 
 def _region(region: Any, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return bounds of each agent's coordinates in the search space, shape (n, m)."""
+    """Return lower and upper bounds of each agent's position in the search space, two arrays (n, m)."""
     if region is None:
         low, high = q.min(axis=0), q.max(axis=0)
         region_margin = _ROOM * float((high - low).max()) or 1.0

@@ -180,7 +180,7 @@ def _ensure_kinds(theorem: Any, tolerances: Any, surrogate: Any) -> None:
 
 
 class _Record:
-    """Statuses and margins of all evaluations, and the worst case so far."""
+    """Statuses and margins of a theorem's claims over all runs of a search, and the worst case so far."""
 
     def __init__(self) -> None:
         self.rows: list[dict[str, tuple[str, float]]] = []

@@ -1,4 +1,4 @@
-"""Grade minimised by the search: lower the nearer a run comes to refuting the claim.
+"""Grade of a run, minimised by the search: lower the nearer the run comes to refuting a claim.
 
 Refuted runs are graded in [-3, -2], judged ones in (-1, 1.001], vacuous ones from 2 on, failed ones 1000. So a search
 that leaves the hypotheses is led back by how far they are missed, and comes to the margin when they are met. A run
@@ -33,6 +33,6 @@ def grade(claim: Claim, hypotheses: Iterable[Hypothesis], *, scale: float = 1.0,
 
 
 def shortfall(hypotheses: Iterable[Hypothesis]) -> float:
-    """Return the summed shortfall of unmet hypotheses, at most 1 for each."""
+    """Return by how much a theorem's unmet hypotheses are missed, summed, at most 1 for each."""
     unmet_margins = [h.margin for h in hypotheses if h.status == "unmet"]
     return float(sum(1.0 if margin is None or isnan(margin) else squash(abs(margin)) for margin in unmet_margins))

@@ -11,7 +11,7 @@ _FULL = 100  # dimensions up to which the whole covariance is learned, beyond th
 
 
 class Search:
-    """Optimiser that proposes generations of points and learns from their grades (IPOP-CMA-ES)."""
+    """IPOP-CMA-ES optimiser that proposes generations of points and learns from their grades."""
 
     def __init__(self, start: FloatArray, seed: int) -> None:
         self.dimension, self.restarts = len(start), 0

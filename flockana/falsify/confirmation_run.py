@@ -16,7 +16,7 @@ _DEFAULT = 1e-8  # the relative tolerance of `simulate`; for want of its own, th
 
 
 def confirmed(verdict: Verdict, judge: Callable[[Trajectory], Verdict], case: Any) -> Verdict:
-    """Return the verdict; refuted claims become inconclusive unless a much finer run refutes them too."""
+    """Return the verdict, with refuted claims inconclusive unless a much finer run refutes them too."""
     # The case, a scenario or a counterexample, has a law, a start and options of `simulate`.
     # A map has no tolerance: its verdict stays as it is.
     if case.law.is_map or all(claim.status != "refuted" for claim in verdict.claims):

@@ -194,7 +194,7 @@ def _text(value: Any) -> str:
 
 
 def _options(data: Any) -> dict[str, Any]:
-    """Return the known keyword arguments of `simulate` in a mapping."""
+    """Return the keyword arguments of `simulate` from a counterexample's data; raise on unknown ones."""
     unknown = sorted({*data} - {*_OPTIONS})
     if unknown:
         raise ValueError(f"options {', '.join(unknown)}: expected some of {', '.join(_OPTIONS)}")

@@ -23,7 +23,7 @@ _WORST_FIRST = ("refuted", "inconclusive", "verified", "vacuous", "failed")
 
 @dataclass(frozen=True, eq=False)
 class Falsification:
-    """Result of `falsify`.
+    """Result of a search for a counterexample by `falsify`: the worst run and all claims' margins.
 
     Parameters
     ----------
@@ -64,23 +64,23 @@ class Falsification:
     unmet: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
-        """Return a summary in one line."""
+        """Return a summary of the search for a counterexample in one line."""
         what = f"{self.theorem}:{self.claim} on {self.scenario}"
         return f"<Falsification of {what}: {self.status}, margin {self.margin:.4g}, {self.evaluations} evaluations>"
 
     @property
     def scenario(self) -> str:
-        """Name of the scenario."""
+        """Name of the scenario in whose neighbourhood a counterexample was searched."""
         return self.case.name
 
     @property
     def q0(self) -> FloatArray:
-        """Positions of the worst start, shape (n, m)."""
+        """Initial positions of the worst run of the search, shape (n, m)."""
         return self.case.q0
 
     @property
     def p0(self) -> FloatArray:
-        """Velocities of the worst start, shape (n, m)."""
+        """Initial velocities of the worst run of the search, shape (n, m)."""
         return self.case.p0
 
     def _worst(self, name: str, none: Any) -> Any:
@@ -94,7 +94,7 @@ class Falsification:
 
     @property
     def error(self) -> float:
-        """Numerical error of `margin`; NaN without one."""
+        """Numerical error of the claim's margin on the worst run; NaN without a margin."""
         return float(self._worst("error", math.nan))
 
     @property
@@ -109,12 +109,12 @@ class Falsification:
 
     @property
     def evaluations(self) -> int:
-        """Number of runs made."""
+        """Number of runs that the search for a counterexample made."""
         return len(self.statuses[self.claim])
 
     @property
     def failures(self) -> int:
-        """Number of runs that failed."""
+        """Number of runs of the search that failed."""
         return self.statuses[self.claim].count("failed")
 
     @property
@@ -140,7 +140,7 @@ class Falsification:
         return min(self.statuses[claim], key=_WORST_FIRST.index)
 
     def run(self) -> Trajectory:
-        """Simulate the worst case again."""
+        """Simulate the worst case of the search again."""
         return self.case.run()
 
     def counterexample(self) -> Counterexample:

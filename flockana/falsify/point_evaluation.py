@@ -30,7 +30,7 @@ class Evaluation:
 
     @property
     def status(self) -> str:
-        """Status of the claim."""
+        """Status of the claim that decided a point's grade, such as refuted or vacuous."""
         return "all failed" if self.verdict is None else self.verdict.claim(self.claim).status
 
 
@@ -47,7 +47,7 @@ class Problem:
     scales: Mapping[str, float] = field(default_factory=dict)  # units of the margins by claim, 1 where none is given
 
     def __call__(self, point: FloatArray) -> Evaluation:
-        """Evaluate a point of the search space; an error becomes the grade of a failed run."""
+        """Evaluate a point of the search space; an error gives the grade of a failed run."""
         try:
             with restore_interrupts():
                 run, verdict = self.judged(self.space.case(point))
@@ -57,7 +57,7 @@ class Problem:
 
     @np.errstate(all="ignore")
     def judged(self, case: Scenario) -> tuple[Trajectory, Verdict | None]:
-        """Return a case's run, and the verdict on a complete one, refutations confirmed by a finer run."""
+        """Return a case's run, and the verdict on a complete run, with refutations confirmed by a finer run."""
 
         def judge(again: Trajectory) -> Verdict:
             return verify(self.theorem, again, tolerances=self.tolerances, subject=case.name)
@@ -91,6 +91,6 @@ class Problem:
 
 
 def units(verdict: Verdict) -> dict[str, float]:
-    """Return the unit of each margin on a run, for comparing margins of different claims."""
+    """Return the modulus of each claim's margin on a run as its unit, for comparing claims' margins."""
     magnitudes = {c.name: abs(float(c.margin)) for c in verdict.claims if c.margin is not None}
     return {name: unit_size for name, unit_size in magnitudes.items() if 0.0 < squash(unit_size) < 1.0}

@@ -37,7 +37,7 @@ _ALPHA = lift(*_PARTS, norm=kernel.norm_alpha)
 
 
 def slopes_within(law: AlphaInteraction, r: float, parts: int) -> tuple[SlopeBound, ...]:
-    """Return bounds of the slopes of the pair force φ_α(‖x‖_σ) dz/ds and of the bump, for a bump that ends at r.
+    """Return bounds of the slopes of force and adjacency by distance, for an α-pair law with bump end r.
 
     On each part z, φ and dz/ds rise, the bump and d²z/ds² fall, and φ′ and the bump's slope have one summit.
     """
@@ -122,7 +122,7 @@ class AlphaInteraction(Tabulated, PairInteraction):
 
     @cached_property
     def kappa(self) -> float:
-        """Ratio r/d."""
+        """Ratio κ = r/d of interaction range and desired distance."""
         return self.r / self.d
 
     @cached_property
@@ -160,11 +160,11 @@ class AlphaInteraction(Tabulated, PairInteraction):
 
     @property
     def feature(self) -> float:
-        """Length of the narrowest feature: the desired distance d."""
+        """Length of the narrowest feature of the pair force: the desired distance d."""
         return self.d
 
     def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:
-        """Return bounds of |dF/ds| and |da/ds| on equal parts of the range.
+        """Return bounds of the slopes |dF/ds| of force and |da/ds| of adjacency on equal parts of the range.
 
         Parameters
         ----------

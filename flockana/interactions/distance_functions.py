@@ -1,4 +1,4 @@
-"""Functions of the distance of two agents, in one vocabulary, and their entries in a law.
+"""Functions of the distance of two agents (force, potential, adjacency) with a common interface.
 
 A function has an `energy`, a `force` = −dV/ds (positive repels), an `adjacency` a_ij by which velocities are averaged,
 and a `range` beyond which two agents do not feel each other; what it lacks is 0.
@@ -46,7 +46,7 @@ class Corner(NamedTuple):
 
 
 class PairCorner(NamedTuple):
-    """Pair of agents at a corner of one of the law's functions."""
+    """Pair of agents at a distance where a force or an adjacency of the law jumps or bends."""
 
     i: int
     j: int
@@ -56,7 +56,7 @@ class PairCorner(NamedTuple):
 
 
 class SlopeBound(NamedTuple):
-    """Bounds of |dF/ds| and |da/ds| between two distances; infinite where unknown."""
+    """Bounds of |dF/ds| of force and |da/ds| of adjacency between two distances; infinite if unknown."""
 
     left: float
     right: float
@@ -81,7 +81,7 @@ class DistanceFunction(ShortRepr, ABC):
     @property
     @abstractmethod
     def range(self) -> float:
-        """Distance beyond which the function is 0, in the user's unit; infinite without one."""
+        """Distance beyond which force and adjacency are 0, in the user's unit; infinite if there is none."""
 
     @abstractmethod
     def inner(self, s2: FloatArray) -> InnerValues:
@@ -105,7 +105,7 @@ class DistanceFunction(ShortRepr, ABC):
 
     @property
     def facts(self) -> PairFacts:
-        """Facts over all distances, by name: met for `proofs`, unmet for `faults`."""
+        """Properties of the function over all distances, such as smoothness, each met, unmet or assumed."""
         answers = {name: Fact("assumed", f"{type(self).__name__} names no proof of it") for name in PROVED}
         answers |= {name: Fact("met", text) for name, text in self.proofs.items()}
         if self.faults:
@@ -124,7 +124,7 @@ class DistanceFunction(ShortRepr, ABC):
         return None
 
     def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...] | None:
-        """Return bounds of |dF/ds| and |da/ds| on consecutive parts of the range; None if unknown.
+        """Return bounds of the slopes of force and adjacency on parts of the range; None if unknown.
 
         Parameters
         ----------
@@ -231,7 +231,7 @@ def _differ(below: float, above: float, usual: FloatArray) -> bool:
 
 
 def shaped(values: FloatArray, s: Any) -> Any:
-    """Return values as a float for a number, else in the shape of the distances."""
+    """Return an array of values as a float if the distance is a number, else in the shape of the distances."""
     return float(values[0]) if np.ndim(s) == 0 else values.reshape(np.shape(s))
 
 
@@ -254,14 +254,14 @@ class LawFunction:
 
     @property
     def corners(self) -> tuple[Corner, ...]:
-        """Corners of the used parts of the function."""
+        """Distances at which the force or adjacency jumps or bends, of those that the law's gains use."""
         if self.function is None:
             return ()
         gains = {"force": self.stiffness, "adjacency": self.damping}
         return tuple(corner for corner in self.function.corners if gains[corner.part] != 0.0)
 
     def pairs_at_corners(self, q: FloatArray, tolerance: float = _AT) -> Iterator[PairCorner]:
-        """Yield the pairs of a configuration that stand at a corner, to a relative tolerance."""
+        """Yield the pairs of agents at a distance where the force or adjacency jumps or bends."""
         corners = self.corners
         if not corners:
             return
@@ -316,5 +316,5 @@ class UnknownEdges(DistanceFunction):
 
     @property
     def corners(self) -> tuple[Corner, ...]:
-        """Corners of unknown height, one at each distance."""
+        """Jumps of the force of unknown height, one at each distance."""
         return tuple(Corner(s, "force", "jump", np.nan, np.nan) for s in self.distances)

@@ -171,7 +171,7 @@ class FormulaInteraction(PairInteraction):
         return f"{call} [{'; '.join(self.remarks)}]" if self.remarks else call
 
     def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:
-        """Return bounds of |dF/ds| and |da/ds| on parts of the range; infinite where unknown.
+        """Return bounds of |dF/ds| of force and |da/ds| of adjacency by parts of the range, or infinity.
 
         Parameters
         ----------
@@ -198,7 +198,7 @@ class FormulaInteraction(PairInteraction):
 
     @property
     def far_potential(self) -> float:
-        """Potential at the range; infinite at a pole."""
+        """Potential of a pair at the range and beyond; infinite if the potential has a pole at the range."""
         return float(self._parts.par[1])
 
     @property

@@ -26,7 +26,7 @@ _CLOSE, _CLOSER = 1e-40, 1e-44  # of y at the range: where limits at 0 are read
 
 @dataclass(frozen=True)
 class NearZero:
-    """Method for the weight near 0: ``plain``, ``series`` in y below a bound, or ``excluded`` at 0."""
+    """Method of evaluating a formula's force weight near distance 0: plain, by power series, or excluded."""
 
     kind: Literal["plain", "series", "excluded"]
     bound: float = 0.0
@@ -35,7 +35,7 @@ class NearZero:
 
 
 def near_zero(cut: PiecewiseFormula, end: float) -> NearZero:
-    """Return how to evaluate the first piece near 0, from its values in high precision."""
+    """Return how to evaluate a formula's force weight near distance 0, from its values in high precision."""
     piece = cut.pieces[0]
     weight, slope = cut.function(piece.weight), cut.function(piece.slope)
     first, second_value = float(weight(end * _CLOSE)), float(weight(end * _CLOSER))

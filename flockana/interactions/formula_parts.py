@@ -68,7 +68,7 @@ class FormulaParts:
         return tuple(SlopeBound(*bound) for bound in bounds)
 
     def same_as(self, other: FormulaParts, length: float, force: float, tolerance: float) -> bool:
-        """Return whether another formula's law is this one in other units, compared on a grid."""
+        """Return whether two formula laws are the same in different units, compared on a grid."""
         mine, their_values = self.looks * np.array([[force], [1.0]]), other.looks
         threshold = np.nanmax(np.abs(mine), axis=1, keepdims=True) * tolerance
         gap = np.abs(mine - their_values)
@@ -79,7 +79,7 @@ class FormulaParts:
 def formula_parts(
     main: str, forces: bool, adjacency: str, r: float, d: float, parameters: tuple[tuple[str, float], ...]
 ) -> FormulaParts:
-    """Return the compiled form of a formula with its numbers."""
+    """Return a pair-law formula with parameter values as source texts, kernel parameters and facts."""
     import sympy as sp
 
     from flockana.symbolic import pair_formula as pf
@@ -134,15 +134,15 @@ class _PreciseForce:
         self.strength, self.looks, self.places = 0.0, np.zeros((2, 0)), _places(cut, eps)
 
     def y(self, s: float) -> float:
-        """Return s² or z at a distance."""
+        """Return the formula's variable at a Euclidean distance s: its square s² or its σ-norm z."""
         return float(_norm(s, self.eps)) if self.eps else s * s
 
     def of_mark(self, mark: float) -> float:
-        """Return s² or z at a cut given in s or z."""
+        """Return s² or the σ-norm z at a boundary between pieces of the formula, given as s or z."""
         return mark if self.eps else mark * mark
 
     def piece(self, s: float) -> int:
-        """Return the index of the piece that holds a distance."""
+        """Return the index of the formula's piece that applies at a distance."""
         return bisect_right(self.places, s)
 
     def force(self, s: float, piece: int | None = None) -> float:
@@ -158,7 +158,7 @@ class _PreciseForce:
         return float(self._energies[self.piece(s)](self.y(s)))
 
     def look(self, d: float, *, unbounded: bool) -> None:
-        """Return samples of the force along the range; raise where the force is not finite."""
+        """Sample the force and adjacency of a formula along the range; raise where they are not finite."""
         grid = np.linspace(0.0, self.r, _GRID)[1:-1]
         self.looks = np.array([[self.force(s) for s in grid], [self.weight(s) for s in grid]])
         energies = [self.energy(s) for s in grid]
@@ -217,7 +217,7 @@ class _PreciseForce:
         return d < self.r and self.force(d * (1.0 - 1e-3)) < 0.0 < self.force(min(d * (1.0 + 1e-3), 0.5 * (d + self.r)))
 
     def jumps(self) -> list[float]:
-        """Return the cuts at which the force jumps by more than rounding of the parameters."""
+        """Return the boundaries between pieces of the formula at which the force jumps beyond rounding."""
         small_force = _SMALL * self.strength
         return [s for k, s in enumerate(self.places) if not abs(self.force(s, k) - self.force(s, k + 1)) <= small_force]
 
@@ -252,7 +252,7 @@ def _resolved(values: Any, left: float, right: float, scale: float, depth: int) 
 
 
 def _texts(cut: PiecewiseFormula, near: NearZero, *, forces: bool) -> tuple[Texts, list[Any]]:
-    """Return the source text of pair, slope, potential, adjacency slope and norm, and their constants."""
+    """Return the source texts of a formula's force weight, slopes, potential and σ-norm, and constants."""
     from flockana.symbolic import pair_formula as pf
     from flockana.symbolic.code_printing import Constants, function_text
 

@@ -34,13 +34,13 @@ def evaluate(compiled: Callable[..., Any], x: Any, *parameters: Any) -> Any:
 
 
 def one_by_one(function: Callable[..., float], par: FloatArray) -> Callable[[FloatArray], FloatArray]:
-    """Return a scalar function with its parameters as a function of arrays, interpreted."""
+    """Return a scalar function with fixed parameters as an interpreted function of arrays."""
     parameter_list = par.tolist()
     return lambda z: np.array([function(item, parameter_list) for item in z.tolist()])
 
 
 def kernel_values(kernels: PairKernels, par: FloatArray, s2: FloatArray) -> InnerValues:
-    """Return `DistanceFunction.inner` of compiled functions with their parameters."""
+    """Return force weight, adjacency and their slopes at squared distances, from a law's compiled functions."""
     line = np.append(0.0, np.sqrt(s2))[:, None]
     ends = np.arange(1, line.size, dtype=np.int64)
     w, a, weight_slope = kernels.terms(line, np.zeros_like(ends), ends, par)
@@ -64,7 +64,7 @@ class Tabulated(ABC):
 
     @property
     def par(self) -> FloatArray:
-        """Parameters in the order of the kernels."""
+        """Pair law's parameters in the order in which its compiled functions read them."""
         return self._parts[0]
 
     @property
@@ -104,7 +104,7 @@ class PairInteraction(DistanceFunction):
 
     @property
     def bond_range(self) -> float:
-        """Distance below which pairs are held at `length`; by default the range."""
+        """Distance below which the force holds pairs at the desired distance; by default the range."""
         return self.range
 
     @property
@@ -139,7 +139,7 @@ class PairInteraction(DistanceFunction):
     @property
     @abstractmethod
     def par(self) -> FloatArray:
-        """Parameters in the order of the kernels."""
+        """Pair law's parameters in the order in which its compiled functions read them."""
 
     @property
     @abstractmethod
@@ -176,7 +176,7 @@ class PairInteraction(DistanceFunction):
 
     @cached_property
     def _constants(self) -> FloatArray:
-        """Return `par` in the form used by kernels in the inner loop."""
+        """Return the pair law's parameters as a view that the integrators' compiled functions accept."""
         return thawed(self.par)
 
     def potential_energy(self, q: FloatArray) -> float:
@@ -269,7 +269,7 @@ class PairInteraction(DistanceFunction):
         return w * np.eye(delta.shape[1]) + 2.0 * slope * delta[:, :, None] * delta[:, None, :]
 
     def _assemble(self, q: FloatArray, block_of: Any, pairs: Pairs | None = None) -> csr_array:
-        """Return the sparse matrix of blocks ±B over the pairs within range, as `pair_matrix`."""
+        """Return the sparse matrix assembled from one m × m block for each pair within range."""
         from scipy.sparse import csr_array
 
         n, m = q.shape

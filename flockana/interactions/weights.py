@@ -24,7 +24,7 @@ class Weight(DistanceFunction):
     @property
     @abstractmethod
     def par(self) -> FloatArray:
-        """Parameters in the order of the kernels."""
+        """Weight's parameters in the order in which its compiled functions read them."""
 
     @property
     def range(self) -> float:

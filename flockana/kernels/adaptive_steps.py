@@ -14,7 +14,7 @@ from flockana.kernels.verlet_list import COUNT
 
 
 class Block(NamedTuple):
-    """Block of several steps: one row for each state between them."""
+    """Block of consecutive integration steps: times, state vectors, rates and energies, a row per state."""
 
     t: Any  # times
     y: Any  # vectors
@@ -23,14 +23,14 @@ class Block(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Work space of a step: stage rates, and a vector."""
+    """Work space of a Runge-Kutta step: stage rates, and a trial vector."""
 
     rates: Any
     trial: Any
 
 
 class Marched(NamedTuple):
-    """Result of a step: status, lengths of this step and of the next, evaluations."""
+    """Result of an integration step: status, lengths of the step and of the next, evaluations."""
 
     status: Any
     h: Any
@@ -51,7 +51,7 @@ def spacing(t):
 
 @inlined
 def _controlled(h, error, exponent, rejected):
-    """Return (next step, whether this one is accepted), as scipy's solvers choose."""
+    """Return (length of the next step, whether the step is accepted), by the rule of scipy's solvers."""
     factor = _SAFETY * error**exponent
     if error < 1.0:
         factor = _MOST if error == 0.0 else min(_MOST, factor)
@@ -61,13 +61,13 @@ def _controlled(h, error, exponent, rejected):
 
 @inlined
 def step_of(block, k, room):
-    """Return the step from row k of a block to the next row."""
+    """Return the step from row k of a block of states to row k + 1: times, states and work arrays."""
     return Step(block.t[k], block.t[k + 1] - block.t[k], block.y[k], block.y[k + 1], room.rates, room.trial)
 
 
 @inlined
 def march(block, k, h, ends, system, method, room, pairs):
-    """Make a step from row k of a block to the next; `ends` are its latest end time and the final time.
+    """Integrate from row k of a block to the next; `ends` are the step's latest end time and the final time.
 
     The step has the length h, if its error allows it, or, if h is 0, one that is chosen here.
     """

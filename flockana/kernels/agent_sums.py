@@ -85,7 +85,7 @@ def _pull_to(u, x, v, place, velocity, c1, c2, m):
 
 @inlined
 def pull_to(u, x, v, place, velocity, c1, c2):
-    """Subtract the pull c1 (x − place) + c2 (v − velocity) from u."""
+    """Subtract the pull c1 (x − place) + c2 (v − velocity) from the accelerations u."""
     if x.shape[1] == v.shape[1] == u.shape[1] == 2:  # said outright, it lets the compiler take several agents at once
         _pull_to(u, x, v, place, velocity, c1, c2, 2)
     else:

@@ -15,7 +15,7 @@ _OMEGA, _PATH = 1, 2
 
 @kernel
 def act_along(t, x, v, u, numbers, panels, listed):
-    """Add (thrust − brake ‖p_i‖²) p_i to u, and return its power."""
+    """Add drag and thrust, (thrust − brake ‖p_i‖²) p_i, to the accelerations u, and return their power."""
     (n, m), velocity, centre, thrust_gain, brake_gain, power = (
         v.shape, listed.frame[1], listed.room[0], numbers[_THRUST], numbers[_BRAKE], 0.0,
     )  # fmt: skip
@@ -39,7 +39,7 @@ def act_along(t, x, v, u, numbers, panels, listed):
 
 @kernel
 def act_all(t, x, v, u, numbers, panels, listed):
-    """Add d²q_r/dt² of a path to all, and return its power: 0 in the moving frame."""
+    """Add the γ-agent's acceleration d²q_r/dt² to all u_i; return its power, 0 in the moving frame."""
     (n, m), omega, power = x.shape, numbers[_OMEGA], 0.0
     path = numbers[_PATH : _PATH + 5 * m].reshape(5, m)
     for k in range(m):

@@ -14,7 +14,7 @@ STRENGTH, LENGTH, DECAY = range(3)
 
 @dataclass(frozen=True)
 class WeightKernels:
-    """Compiled functions of a weight."""
+    """Compiled functions of a velocity-consensus weight a(s²) and its slope."""
 
     of_square: Kernel  # a(s²) of its parameters
     weight: Callable[..., Any]  # a over an array of squared distances
@@ -22,12 +22,12 @@ class WeightKernels:
 
     @property
     def match(self) -> Callable[..., float]:
-        """``match(x, v, gain, r2, par, u)``: the sum over pairs nearer than √r2."""
+        """``match(x, v, gain, r2, par, u)``: add velocity consensus over pairs nearer than √r2 to u."""
         return self._sums.match
 
     @property
     def act(self) -> Kernel:
-        """`match` as a term of a law."""
+        """Velocity consensus over pairs as a compiled term of a law."""
         return self._sums.act
 
     @property

@@ -77,7 +77,7 @@ def norm_alpha(s2, par):
 
 @register_jitable
 def stress_alpha(z, root, par):
-    """(s_ij, a_ij) from `norm_alpha`."""
+    """Force weight s_ij and adjacency a_ij from `norm_alpha`."""
     c0 = 1.0/par[AREA]
     c1 = 1.0/par[R_ALPHA]
     x0 = c0*(-par[D_ALPHA] + z)
@@ -89,14 +89,14 @@ def stress_alpha(z, root, par):
 
 @register_jitable
 def pair_alpha(s2, par):
-    """(s_ij, a_ij) at squared distance s2."""
+    """Force weight s_ij and adjacency a_ij of a pair at squared distance s2."""
     z, root = norm_alpha(s2, par)
     return stress_alpha(z, root, par)
 
 
 @register_jitable
 def pair_alpha_slope(s2, par):
-    """d(s_ij)/d(s2), for the Hessian of V."""
+    """Derivative d(s_ij)/d(s2) of a force weight."""
     x0 = 1.0/par[AREA]
     x1 = sigma_norm(s2, par[EPS])
     x2 = x0*(-par[D_ALPHA] + x1)
@@ -115,7 +115,7 @@ def pair_alpha_slope(s2, par):
 
 @register_jitable
 def pair_alpha_adjacency_slope(s2, par):
-    """d(a_ij)/d(s2), for Jacobians."""
+    """Derivative d(a_ij)/d(s2) of an adjacency, for Jacobians."""
     x0 = 1.0/par[R_ALPHA]
     x1 = sigma_norm(s2, par[EPS])
     x2 = bump_slope(x0*x1, par[H])

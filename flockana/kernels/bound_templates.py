@@ -25,7 +25,7 @@ _BOUND = re.compile(r"^(?:from .+ import \w+ as )?(\w+)(?: = .+)?  # bound$", re
 
 @cache
 def bound(template: str, **bindings: Any) -> ModuleType:
-    """Return the module of a template with bound names; equal bindings share one module."""
+    """Return the module of a template's source with given functions and constants bound to its names."""
     spec = find_spec(template)
     text = Path(spec.origin).read_text("utf-8")  # type: ignore[union-attr, arg-type]
     functions, left = {}, dict(bindings)

@@ -49,7 +49,7 @@ class Around(NamedTuple):
 
 
 class PairRoom(NamedTuple):
-    """Work space of one pair: halved curves, time spans, control points, reaches, allowances, radii."""
+    """Work space for the check of one pair of agents: curves, time spans, control points and bounds."""
 
     stack: Any
     spans: Any
@@ -61,7 +61,7 @@ class PairRoom(NamedTuple):
 
 @inlined
 def pair_room(radii):
-    """Return work space for a pair of agents with a given number of radii."""
+    """Return work space for the check of a pair of agents against a given number of distances."""
     points = np.empty((2, 6, 3))
     for row in range(2):
         for k in range(6):
@@ -87,7 +87,7 @@ def relative_curve(points, curve):
 
 @inlined
 def _ahead(points, s, far, room):
-    """Return the share of the step at the pair's next closest approach, or after a path of `far`; -1 if the pair parts.
+    """Return the fraction of a step to a pair's closest approach or a path of `far`; -1 if the pair parts.
 
     `room` is for six control points.
     """
@@ -109,7 +109,7 @@ def _ahead(points, s, far, room):
 
 @inlined
 def _visit(points, edge, far, stack, spans):
-    """Return the share of the step at which a pair from beyond `edge` is first well within it, at most 1.
+    """Return the fraction of a step at which a pair is first well within the distance `edge`, at most 1.
 
     Well within is at its closest approach, or as soon as it has gone `far` there.
     """
@@ -132,7 +132,7 @@ def _apart2(points, k):
 
 @inlined
 def share_of_pair(room, far, share):
-    """Return the share of a step that the pair in `room` allows, if less than `share`."""
+    """Return the fraction of a step in which a pair skips no encounter, at most `share`."""
     points, radii = room.points, room.radii
     s2, reach_sum = _apart2(points, 0), room.reach[0] + room.reach[1]
     slack, last_index = room.allowance[0] + room.allowance[1], radii.shape[1] - 1
@@ -158,7 +158,7 @@ def share_of_pair(room, far, share):
 
 @subroutine
 def steepest(slope):
-    """Return the largest of the slopes of all agents' paths."""
+    """Return the largest modulus of the slopes of the agents' common affine displacement."""
     maximum = 0.0
     for k in range(6):
         for c in range(3):
@@ -179,7 +179,7 @@ def means_of(ends):
 
 @inlined
 def way_of_means(ends, means):
-    """Return `common_way` from the means of all agents."""
+    """Return (mean, slope, centre) of the agents' common displacement in a step, from given means."""
     h, q0, p0, u0, q1, p1, u1 = ends
     mean, slope, centre, s, z = np.empty((6, 3)), np.empty((6, 3)), np.empty(3), h / 5.0, h * h / 20.0
     for k in range(6):
@@ -203,7 +203,7 @@ def way_of_means(ends, means):
 
 @inlined
 def common_way(ends):
-    """Return (mean, slope, centre) of all agents' control points relative to the first: 6 × 3, 6 × 3, and 3.
+    """Return (mean, slope, centre) of the agents' common displacement in a step, affine in their position.
 
     The slope is by how much a way along a coordinate grows with the place there, seen from the centre; none where it is
     steep.
@@ -213,7 +213,7 @@ def common_way(ends):
 
 @inlined
 def squares_beside(ends, common, begin, end):
-    """Return the largest squares of some agents' ways relative to the common one, and of their allowances' parts."""
+    """Return the largest squared deviations of some agents from the common displacement, with allowances."""
     (h, q0, p0, u0, q1, p1, u1), (mean, slope, centre) = ends, common
     m = q0.shape[1]
     way2 = most2 = most3 = 0.0
@@ -237,14 +237,14 @@ def squares_beside(ends, common, begin, end):
 
 @inlined
 def farthest_ways(ends, common):
-    """Return bounds of the longest agent path relative to the common one, and of its rounding allowance."""
+    """Return bounds of the agents' longest path relative to the common displacement and of its allowance."""
     way2, most2, most3 = squares_beside(ends, common, 0, len(ends.q0))
     return bounds_of(way2, most2, most3)
 
 
 @inlined
 def bounds_of(way2, most2, most3):
-    """Return `farthest_ways` from the largest squares."""
+    """Return bounds of the longest relative path and of its allowance, from the largest squares of both."""
     allowance = ALLOWED * (np.sqrt(most2) + np.sqrt(most3))
     return np.sqrt(way2) + allowance, allowance
 

@@ -22,7 +22,7 @@ class Coefficients(NamedTuple):
 
 @inlined
 def _combine(y, h, weights, count, rates, out):
-    """Return y + h Σ weights_j K_j, positions and velocities."""
+    """Write y + h Σ weights_j K_j of positions and velocities, K_j the stage rates, into `out`."""
     for i in range(out.size - 1):
         total = 0.0
         for j in range(count):

@@ -41,7 +41,7 @@ def parallel_twin(kernel: Kernel) -> Kernel:
 
 @cache
 def work_of(*, large: bool, several: bool = False) -> Work:
-    """Return the step functions other than the law, by flock size and number of threads."""
+    """Return callbacks for listing pairs, checking lists and summing stages, by flock size and threads."""
     if several:
         launch_threads()
     y, rates, rows = np.empty(1), np.empty((1, 1)), np.empty(1, np.int64)
@@ -54,7 +54,7 @@ def work_of(*, large: bool, several: bool = False) -> Work:
 
 @kernel
 def _listed_by(listing, q, reach, pairs):
-    """Let a callback list pairs: what steps call is then all that is compiled."""
+    """List the pairs closer than `reach` by a callback, from compiled code, and return their number."""
     return listing(q, reach, pairs)
 
 

@@ -71,7 +71,7 @@ def law_functions(terms: tuple[tuple[Kernel, Kernel], ...], several: bool = Fals
 
 @cache
 def guard_of(kinds: tuple[Kernel, ...]) -> Any:
-    """Return one compiled guard for obstacles of several kinds, with all numbers in one vector."""
+    """Return one compiled check that no agent skips an obstacle in a step, for obstacles of several kinds."""
     numba = load_numba()
     vector, real = numba.float64[::1], numba.float64
     lines = [

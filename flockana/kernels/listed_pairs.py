@@ -1,4 +1,4 @@
-"""Data of a term apart from the state, and the numbers of a pair term."""
+"""Data that the compiled terms of a law read beside the state, and the parameters of a pair term."""
 
 from typing import Any, NamedTuple
 

@@ -40,7 +40,7 @@ def _write_states(y, f, order, frame, begin, end, out):
 
 @inlined
 def _work_of(y, size):
-    """Return the work, which is the vector's last number if it has one beside positions and velocities."""
+    """Return the work done, which is the state vector's last number; NaN if the vector holds none."""
     return y[size] if y.size > size else np.nan
 
 

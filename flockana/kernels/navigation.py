@@ -16,7 +16,7 @@ _MOVING, _UNIT, _GAINS, _OMEGA, _FACTOR, _PATH = range(6)
 
 @inlined
 def _place(t, co, si, path, k):
-    """Return coordinate k of the path at a time, from the cosine and sine of ωt."""
+    """Return coordinate k of the γ-agent's path at a time, from the cosine and sine of ωt."""
     return path[0, k] + path[1, k] * t + path[2, k] * co + path[3, k] * si
 
 

@@ -23,7 +23,7 @@ BLOCK = 8192  # pairs in a block: two index arrays of 32 kB stay in the first-le
 
 @kernel
 def _fill_direct(x, r2, row, first, second):
-    """Fill a block with pairs by testing all, from `row` on; return (row to go on from, number of pairs)."""
+    """Fill a block with pairs by testing all from agent `row` on; return (next agent, number of pairs)."""
     n, capacity, count = x.shape[0], first.size, 0
     while row < n and count + n - 1 - row <= capacity:
         for j in range(row + 1, n):

@@ -73,7 +73,7 @@ def agents(q, p, par, gap, rate, clearance):
 
 @kernel
 def slopes(q, par, beta, reach, blocks):
-    """Add the Hessian block of ψ_β of one obstacle to every agent's."""
+    """Add the Hessian of one obstacle's potential ψ_β to every agent's m × m block."""
     # ∇ψ_β = −w (q̂ − q), so its derivative along e_c is w (e_c − D e_c) + 2 w' (q̂ − q)_c (q̂ − q), D = dq̂/dq
     n, m = q.shape
     axis, gap, rate = np.zeros(m), np.empty(m), np.empty(m)
@@ -91,7 +91,7 @@ def slopes(q, par, beta, reach, blocks):
 
 @kernel
 def braking(q, p, par, beta, reach, by_position, by_velocity):
-    """Add the derivatives of b_ik (p̂_ik − p_i) of one obstacle to every agent's blocks."""
+    """Add one obstacle's derivatives of b_ik (p̂_ik − p_i) by position and velocity to the agents' blocks."""
     # d(s²) = −2 (q̂ − q)·dq, since D (q̂ − q) = 0
     n, m = q.shape
     axis, gap, rate, projected, turn_rate = np.zeros(m), np.empty(m), np.empty(m), np.empty(m), np.empty(m)
@@ -114,13 +114,13 @@ def braking(q, p, par, beta, reach, by_position, by_velocity):
 
 @register_jitable
 def _distance(q, par, room):
-    """Return the distance of a place from the surface; `room` is work space for the projection."""
+    """Return the distance of a position from an obstacle's surface; `room` is work space."""
     return abs(project(q, room[0], par, room[1], room[2]))
 
 
 @kernel
 def _visit(curve, edge, far, par, here, room):
-    """Return the share of a step at which an agent beyond `edge` is first well within it; 1 if it never is."""
+    """Return the fraction of a step at which an agent is first well within the distance `edge`; 1 if never."""
     # The distance from an obstacle changes by no more than the way: so far beyond the edge may be gone safely.
     control_legs = 5.0 * (curve[1:] - curve[:-1])
     fastest, s = longest(control_legs), 0.0
@@ -150,7 +150,7 @@ def _visit(curve, edge, far, par, here, room):
 
 @kernel
 def guard(points, allowance, numbers, shell, far, most):
-    """Return the share of the step, up to the given one, in which no agent skips an obstacle's surroundings.
+    """Return the fraction of a step, at most `most`, in which no agent skips an obstacle's surroundings.
 
     An agent, on a path with control points (n, 6, 3), may not pass the distance `shell`, nor go `far` within it.
     """

@@ -26,16 +26,16 @@ class ObstacleKernels:
 
     @property
     def turns(self) -> bool:
-        """Whether the obstacle kind defines how p̂ turns."""
+        """Whether the obstacle kind defines how the velocity p̂ of a β-agent changes with position."""
         return self.turn is not None
 
     @property
     def sums(self) -> ModuleType:
-        """Return the module of all compiled sums."""
+        """Return the module of the compiled sums over agents and obstacles of one kind."""
         return bound("flockana.kernels.obstacle_sums", project=self.project, turn=self.turn or no_turn)
 
     def __getattr__(self, name: str) -> Any:
-        """Return one of the sums: forces, potential, agents, slopes, braking, share, act, energy, guard."""
+        """Return a compiled sum by its name: forces, potential, agents, slopes, braking, act, energy, guard."""
         if name.startswith("_"):
             raise AttributeError(name)
         return getattr(self.sums, name)

@@ -30,7 +30,7 @@ class PairKernels:
 
     @property
     def law(self) -> dict[str, Any]:
-        """Return the names bound in a template for this pair law."""
+        """Return the pair law's scalar functions by the names to which a template binds them."""
         norm_option = {} if self.norm is None else {"norm": self.norm}
         return {"pair": self.pair, "potential": self.energy_of_pair, "NORMED": self.norm is not None, **norm_option}
 

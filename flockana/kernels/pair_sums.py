@@ -72,7 +72,7 @@ def _add(count, pairs, room, x, v, u, par, gains):
 
 @register_jitable
 def _gather(x, limit, listed, begin, end, pairs, s2):
-    """Keep the pairs of a list's part that are within range; return their number."""
+    """Copy the pairs within range from a section of a pair list; return their number."""
     (first_agents, second_agents), near_pairs = listed, pairs
     count = 0
     if x.shape[1] != M:
@@ -90,7 +90,7 @@ def _gather(x, limit, listed, begin, end, pairs, s2):
 
 @register_jitable
 def _act_in_slab(own, s, x, v, u, numbers, listed, work):
-    """Add the forces of the pairs of a slab to u; write their sum into the slab's room."""
+    """Add the forces of a slab's pairs to u; write the sum Σ a ‖p_j − p_i‖² into the slab's work space."""
     total, r, par, (slab_cuts, near, workspace) = 0.0, numbers[2], as_tuple(numbers[4:]), work
     pairs, block = (near[2 * s], near[2 * s + 1]), (workspace[3 * s], workspace[3 * s + 1], workspace[3 * s + 2])
     for begin in range(slab_cuts[s], slab_cuts[s + 1], BLOCK):
@@ -115,7 +115,7 @@ def act(t, x, v, u, numbers, panels, listed):
 
 @register_jitable
 def _energy_in_slab(own, s, x, numbers, panels, listed, cuts, near, room):
-    """Write Σ ψ over the pairs of a slab that are within range, and their number, into the slab's room."""
+    """Write Σ ψ over the pairs of a slab that are within range, and their number, into work space."""
     total, r, par, pairs, block = 0.0, numbers[2], numbers[4:], 0, (near[2 * s], near[2 * s + 1])
     for begin in range(cuts[s], cuts[s + 1], BLOCK):
         count = _gather(x, max(r * r, 5e-324), listed, begin, min(begin + BLOCK, cuts[s + 1]), block, room[3 * s])
@@ -127,7 +127,7 @@ def _energy_in_slab(own, s, x, numbers, panels, listed, cuts, near, room):
 
 @subroutine
 def energy(t, x, v, numbers, panels, listed):
-    """Return c1 Σ ψ over all pairs: those listed within range, and the constant beyond it."""
+    """Return the energy c1 Σ ψ of all pairs, with the constant potential of those beyond the range."""
     first, second_agents, cuts, near_pairs, room = listed.first, listed.second, listed.cuts, listed.near, listed.room
     slabs, total, pairs, n, marker = cuts.size - 1, 0.0, np.int64(0), x.shape[0], OWN[:0]
     for s in prange(slabs):

@@ -12,7 +12,7 @@ from flockana.kernels.quintic_paths import polygon
 
 @register_jitable
 def _parted(points, share):
-    """Return the control points of a curve's part up to `share`, and of the rest."""
+    """Return the control points of a curve up to the parameter `share`, and those of the remainder."""
     a0, a1, a2, a3, a4, a5 = points
     b0, b1, b2 = a0 + share * (a1 - a0), a1 + share * (a2 - a1), a2 + share * (a3 - a2)
     b3, b4 = a3 + share * (a4 - a3), a4 + share * (a5 - a4)

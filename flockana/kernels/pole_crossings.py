@@ -32,7 +32,7 @@ def _stage_crosses(curve, edge, inward):
 
 @inlined
 def _crosses(room, pole, toward):
-    """Return whether a pair's path covers the share `toward` of its initial distance from the pole."""
+    """Return whether a pair's path covers the fraction `toward` of its initial distance from a pole."""
     stack = room.stack
     relative_curve(room.points, stack[0])
     begin = np.sqrt(stack[0, 0, 0] ** 2 + stack[0, 0, 1] ** 2 + stack[0, 0, 2] ** 2)

@@ -22,7 +22,7 @@ def numbers(moving: bool, constant: Any, cosine: Any, sine: Any, omega: float) -
 
 @kernel
 def act(t, x, v, u, numbers, panels, listed):
-    """Add the push to u and return its power."""
+    """Add a constant and a sinusoidal push to the agents' accelerations u, and return its power."""
     (n, m), rows, power = x.shape, np.int64(numbers[_ROWS]), 0.0
     co, si, block_size = cos(numbers[_OMEGA] * t), sin(numbers[_OMEGA] * t), rows * m
     for k in range(m):

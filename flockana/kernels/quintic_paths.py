@@ -27,7 +27,7 @@ def _norm(x):
 
 @register_jitable
 def polygon(a, b, out, back, bend0, bend1):
-    """Write the control points of a coordinate's quintic from a to b, with h p/5 and h² u/20 at both ends."""
+    """Return the control points of a coordinate's quintic from a to b, with h p/5 and h² u/20 at both ends."""
     return a, a + out, a + 2.0 * out + bend0, b - 2.0 * back + bend1, b - back, b
 
 
@@ -94,7 +94,7 @@ def centred(points, allowance):
 
 @kernel
 def control_points(h, q0, p0, u0, q1, p1, u1):
-    """Return `bernstein` without the flock's common drift."""
+    """Return control points, reaches and error allowances of all agents' quintics, less the common drift."""
     points, _, allowance = bernstein(h, q0, p0, u0, q1, p1, u1)
     reach = centred(points, allowance)
     return points, reach, allowance
@@ -102,7 +102,7 @@ def control_points(h, q0, p0, u0, q1, p1, u1):
 
 @subroutine
 def _start(points, reach, i, j, stop, stack):
-    """Load the pair's relative curve into the stack, unless its ends exclude a distance below stop."""
+    """Load a pair's relative curve into the stack; return False if its ends exclude distances below stop."""
     s2 = 0.0
     for x in range(3):
         s2 += (points[j, 0, x] - points[i, 0, x]) ** 2
@@ -312,7 +312,7 @@ def farthest(points, allowance, floor, tol):
 
 @kernel
 def farthest_in_turn(t, states, slack, floors, tols):
-    """Return the upper bound of `farthest` in each interval; arguments as in `closest_of_few`."""
+    """Return an upper bound of the largest distance of an agent from the flock's centre in each interval."""
     (q, p, u), upper = states, np.empty(len(t) - 1)
     for k in range(len(t) - 1):
         points, _, allowance = bernstein(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])

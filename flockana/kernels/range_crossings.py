@@ -20,7 +20,7 @@ _CHOOSE_10 = np.array([1.0, 10.0, 45.0, 120.0, 210.0, 252.0, 210.0, 120.0, 45.0,
 
 @kernel
 def _squared(points, i, j, r, out):
-    """Write the Bernstein coefficients of ρ² − r² of two quintics."""
+    """Write the Bernstein coefficients of ρ² − r², with ρ the distance of two agents on quintic paths."""
     for k in range(11):
         out[k] = 0.0
     for a in range(6):
@@ -45,7 +45,7 @@ def _halve(stack, top):
 
 @kernel
 def _slopes(c):
-    """Return the least and largest difference of neighbouring coefficients: a tenth of the slope."""
+    """Return the least and largest difference of adjacent Bernstein coefficients, a tenth of the slope."""
     minimum, maximum = np.inf, -np.inf
     for k in range(10):
         minimum, maximum = min(minimum, c[k + 1] - c[k]), max(maximum, c[k + 1] - c[k])
@@ -54,7 +54,7 @@ def _slopes(c):
 
 @kernel
 def _follow(stack, widths, band, slope_band, was_out):
-    """Return (was out of range, status of entries) along stack[0], up to `band` and `slope_band`."""
+    """Return (whether a pair was out of range; NEVER, UNSURE or ENTERS) along the polynomial ρ² − r²."""
     side = NEVER
     widths[0], top = 1.0, 0
     while top >= 0:

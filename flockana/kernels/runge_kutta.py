@@ -44,7 +44,7 @@ class Step(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Functions of large arrays for one or several threads, as callbacks with equal results."""
+    """Callbacks for listing pairs, checking lists and summing stages, for one thread or several."""
 
     listed: Any  # `flockana.kernels.verlet_list.listed_anew`
     covers: Any
@@ -52,7 +52,7 @@ class Work(NamedTuple):
 
 
 class System(NamedTuple):
-    """Law as steps take it: functions, numbers, frame of the state, and work space."""
+    """Law in the form that integration steps call: functions, parameters, reference frame, work space."""
 
     force: Any  # `flockana.kernels.law_kernels.LawFunctions`
     energy: Any
@@ -72,7 +72,7 @@ STRIP = 1024  # components at once: what is summed over the stages stays in the 
 
 @register_jitable
 def combine_strip(begin, y, h, weights, rates, rows, count, out):
-    """Combine stage rates (`combine`) for the components of a strip."""
+    """Combine stage rates, y + h Σ weights_j K_j, for a strip of consecutive components."""
     end = min(begin + STRIP, y.size)
     total, start = out[begin:end], y[begin:end]
     total[:] = 0.0
@@ -87,7 +87,7 @@ def combine_strip(begin, y, h, weights, rates, rows, count, out):
 
 @kernel
 def combine(y, h, weights, rates, rows, count, out):
-    """Return y + h Σ weights_j K_j over the first `count` stages."""
+    """Write y + h Σ weights_j K_j over the first `count` Runge-Kutta stages into `out`."""
     for begin in range(0, y.size, STRIP):
         combine_strip(begin, y, h, weights, rates, rows, count, out)
 
@@ -136,7 +136,7 @@ def energy_of(t, y, system, pairs):
 
 @subroutine
 def stages_of(step, method, begin, end, system, pairs):
-    """Compute stages `begin` to `end` of a step; `reached` is its end after the last stage."""
+    """Compute Runge-Kutta stages `begin` to `end` of a step; `reached` receives the step's result."""
     rows, rates = method.rows, step.rates
     for s in range(begin, end):
         target_row = step.reached if s == method.stages else step.trial
@@ -149,7 +149,7 @@ def stages_of(step, method, begin, end, system, pairs):
 
 @inlined
 def interpolated(theta, step, method, combining):
-    """Write the vector at a share θ of the step into the step's spare array by `combine` or its callback."""
+    """Write the interpolated state vector at the fraction θ of a step into the step's spare array."""
     interpolant = method.interpolant
     count, powers = interpolant.shape
     weights = np.empty(count)

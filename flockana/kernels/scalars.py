@@ -66,7 +66,7 @@ def bump_slope(z, h):
 
 @register_jitable
 def phi_above(s, a, b, c):
-    """Numerator of φ."""
+    """Numerator of the uneven sigmoid φ(s)."""
     c0 = 2.0*c
     c1 = sqrt((c*c) + 1.0)
     c2 = 0.5*a + 0.5*b
@@ -80,7 +80,7 @@ def phi_above(s, a, b, c):
 
 @register_jitable
 def phi_below(s, a, b, c):
-    """Denominator of φ."""
+    """Denominator of the uneven sigmoid φ(s)."""
     c0 = sqrt((c*c) + 1.0)
     x0 = c + s
     x1 = abs(x0)

@@ -1,4 +1,4 @@
-"""What the checks of a step see of a large flock: parts of the agents are looked at by all threads, or one.
+"""Checks of a large flock's steps, computed group by group of agents with one thread or several.
 
 The parts are the same for any number of threads, and so are the results.
 """
@@ -14,7 +14,7 @@ PARTS = 64  # of the agents, or of a list of pairs
 
 
 class Reaches(NamedTuple):
-    """Fields of `flockana.kernels.encounter_checks.Around` that say what pairs may do."""
+    """Distances between agents, poles included, that no step may skip, with limits of the check."""
 
     radii: Any
     far: Any
@@ -26,13 +26,13 @@ class Reaches(NamedTuple):
 
 @register_jitable
 def begin_of(part, count):
-    """Return with which of so many agents or pairs a part begins."""
+    """Return the index of the first agent or pair of one of the equal groups that threads work on."""
     return np.int64(part) * np.int64(count) // PARTS
 
 
 @register_jitable
 def _sum_part(ends, part, sums):
-    """Write the sums of positions, velocities and accelerations at both ends over a part of the agents."""
+    """Write a group's sums of positions, velocities and accelerations at both ends of a step."""
     _, q0, p0, u0, q1, p1, u1 = ends
     for c in range(q0.shape[1]):
         sum_q0 = sum_p0 = sum_u0 = sum_q1 = sum_p1 = sum_u1 = 0.0
@@ -45,7 +45,7 @@ def _sum_part(ends, part, sums):
 
 @kernel
 def means_in_parts(ends):
-    """As `flockana.kernels.encounter_checks.means_of`, part by part."""
+    """Return the means of positions, velocities and accelerations at both ends of a step, by groups."""
     n, m = ends.q0.shape
     sums, means = np.empty((PARTS, 6, m)), np.zeros((6, m))
     for part in prange(PARTS):
@@ -62,7 +62,7 @@ def means_in_parts(ends):
 
 @register_jitable
 def _square_part(ends, mean, slope, centre, part, squares):
-    """Write `squares_beside` of a part of the agents."""
+    """Write the largest squared deviations of a group of agents from the flock's common displacement."""
     n = len(ends.q0)
     begin, end = begin_of(part, n), begin_of(part + 1, n)
     squares[0], squares[1], squares[2] = squares_beside(ends, (mean, slope, centre), begin, end)
@@ -70,7 +70,7 @@ def _square_part(ends, mean, slope, centre, part, squares):
 
 @kernel
 def ways_in_parts(ends, mean, slope, centre):
-    """As `flockana.kernels.encounter_checks.farthest_ways`, part by part."""
+    """Return bounds of the longest relative path of an agent and of its allowance, computed by groups."""
     squares, way2, most2, most3 = np.empty((PARTS, 3)), 0.0, 0.0, 0.0
     for part in prange(PARTS):
         _square_part(ends, mean, slope, centre, np.int64(part), squares[part])

@@ -57,7 +57,7 @@ parallel_list_slabs = parallel(list_slabs)
 
 @kernel
 def listed_in_slabs(q, reach, pairs):
-    """Renew a pair list slab by slab, with the result of `listed_anew`."""
+    """Renew a pair list slab by slab, and return the number of pairs, as `listed_anew` does."""
     return noted(list_slabs(q, reach, pairs.first, pairs.second, pairs.cuts), q, reach, pairs)
 
 

@@ -1,4 +1,4 @@
-"""Step work of large flocks apart from forces and lists, on all threads, with the results of one."""
+"""Sums of stages and checks of pair lists for large flocks, with several threads."""
 
 import numpy as np
 
@@ -18,7 +18,7 @@ def combine_strips(y, h, weights, rates, rows, count, out):
 
 @kernel
 def ways_between(q, reference, along, low, high):
-    """Write the least and greatest displacement of each part of the agents per coordinate, less the common stretch."""
+    """Write least and greatest displacements of each group of agents per coordinate, less a common stretch."""
     n, m = q.shape
     for part in prange(_PARTS):
         begin, end = np.int64(part) * n // _PARTS, (np.int64(part) + 1) * n // _PARTS

@@ -29,7 +29,7 @@ class Rules(NamedTuple):
 
 
 class Judged(NamedTuple):
-    """Data for checking steps."""
+    """Data for checking integration steps: encounters, settings, and the record of energy balances."""
 
     around: Any  # `flockana.kernels.encounter_checks.Around`
     rules: Any
@@ -38,7 +38,7 @@ class Judged(NamedTuple):
 
 
 def empty_ledger() -> Any:
-    """Return the ledger of a run that has not begun."""
+    """Return the empty record of energy-balance checks for a run that has not begun."""
     return np.zeros(TRIED + 64)
 
 
@@ -83,7 +83,7 @@ def ends_of(block, k, n, m):
 
 @inlined
 def checked(block, k, judged, view, kept, near):
-    """Return (length of the repeated step, 0 if accepted; whether the run ends at a pole or for lack of room)."""
+    """Return (length to repeat a step with, 0 if accepted; whether a pole or lack of room ends the run)."""
     encounter_data, rules, ledger, share_allowed = judged
     t, end_time, share = block.t[k], block.t[k + 1], 1.0
     h = end_time - t

@@ -54,7 +54,7 @@ def _at_rest(t, h, points, view):
 
 @inlined
 def _share_of(ends, whole, around, first, second, share):
-    """Return the share of a step allowed by given pairs, if less than `share`; negative if a pole is crossed."""
+    """Return the fraction of a step that given pairs allow, at most `share`; negative at a crossed pole."""
     common_motion, path_bounds, distance_band = whole
     if POLES and not around.few:
         limits = steepest(common_motion[1]), path_bounds[0] + path_bounds[1]
@@ -69,7 +69,7 @@ def _share_of(ends, whole, around, first, second, share):
 
 @register_jitable
 def _look_at_part(own, ends, common, numbers, reaches, first, second, part, shares):
-    """Write the share of a step that a part of the listed pairs allow."""
+    """Write the fraction of a step that a group of listed pairs allows."""
     begin, end = begin_of(part, first.size), begin_of(part + 1, first.size)
     whole = common, (numbers[0], numbers[1]), (numbers[2], numbers[3])
     radii, far_limit, poles, toward, few = reaches
@@ -79,7 +79,7 @@ def _look_at_part(own, ends, common, numbers, reaches, first, second, part, shar
 
 @kernel
 def share_in_parts(ends, common, numbers, reaches, first, second):
-    """Return `_share_of` over the parts of a list of pairs; `numbers` are ways, band and edges."""
+    """Return the fraction of a step that listed pairs allow, group by group; `numbers` are bounds."""
     shares, marker, share = np.empty(PARTS), OWN[:0], 1.0
     for part in prange(PARTS):
         _look_at_part(marker, ends, common, numbers, reaches, first, second, np.int64(part), shares)
@@ -93,7 +93,7 @@ parallel_share_in_parts = parallel(share_in_parts)
 
 @inlined
 def _ways_of(ends):
-    """Return `common_way` and `farthest_ways`."""
+    """Return the agents' common displacement in a step, and bounds of their deviations from it."""
     if not LARGE:
         common = common_way(ends)
         return common, farthest_ways(ends, common)
@@ -104,7 +104,7 @@ def _ways_of(ends):
 
 @inlined
 def _share_of_list(ends, whole, around, first, second, share):
-    """Return `_share_of` over a list of pairs, of a large flock in parts."""
+    """Return the fraction of a step that listed pairs allow; pairs of a large flock are taken by groups."""
     if not LARGE:
         return _share_of(ends, whole, around, first, second, share)
     common_motion, path_bounds, distance_band = whole
@@ -117,7 +117,7 @@ def _share_of_list(ends, whole, around, first, second, share):
 
 @inlined
 def _share_of_crowd(ends, whole, around, share):
-    """Return the share of a step allowed by all close pairs, found block by block without a list."""
+    """Return the fraction of a step that all close pairs allow, found block by block without a list."""
     q0, limit = ends.q0, whole[2][1]
     (n, m), cell, row = q0.shape, np.int64(0), np.int64(0)  # typed, as in `advance`
     grid, x = sort_into_grid(q0, limit), np.empty(q0.shape)

@@ -120,7 +120,7 @@ def covers(pairs, q, within):
 
 @subroutine
 def noted(count, q, reach, pairs):
-    """Record the positions of a new list, and return its count."""
+    """Record the agents' positions at which a pair list was made, and return its number of pairs."""
     for i in range(q.shape[0]):
         for c in range(q.shape[1]):
             pairs.places[i, c] = q[i, c]
@@ -145,7 +145,7 @@ def no_pairs(n: int, m: int) -> Pairs:
 
 
 def with_room(pairs: Pairs) -> Pairs | None:
-    """Return an empty list with the lacking room, or twice the room; None if the last list sufficed."""
+    """Return an empty pair list of larger capacity; None if the capacity of the last list sufficed."""
     if (missing_count := -int(pairs.counts[COUNT])) <= -CROWDED:
         return None
     capacity = max(missing_count, 2 * pairs.first.size)

@@ -136,7 +136,7 @@ def export_lammps(
 
 
 def _translatable(law: Any) -> tuple[Law, PairTerm]:
-    """Return the continuous law and its pair term, or raise."""
+    """Return the continuous law and its pair term; raise if the law cannot be exported to LAMMPS."""
     ensure_law(law)
     continuous_law = law.continuous
     term = None if continuous_law is None else continuous_law.term(PairTerm)
@@ -182,7 +182,7 @@ def _clock(law: Law, start: float, end: float, dt: float | None, samples: int) -
 
 
 def _ensure_own(paths: Iterable[Path]) -> None:
-    """Raise if a file exists there that is not from an earlier export."""
+    """Raise if one of the given paths exists and is not a file of an earlier export."""
     for path in paths:
         if not os.path.lexists(path):
             continue

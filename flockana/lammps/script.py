@@ -28,7 +28,7 @@ class Clock:
 
 @dataclass
 class Translation:
-    """Translation of a law into a script."""
+    """Translation of a law into commands of a LAMMPS script, with its exact, inexact and missing terms."""
 
     fixes: list[str] = field(default_factory=list)  # commands that add forces
     # a pairwise damping of weight (1 − r/range)^(2 exponent), if one is in the script
@@ -100,7 +100,7 @@ def nearest_weight(term: PairTerm, m: int) -> tuple[float, float]:
 
 
 def data_text(q: FloatArray, p: FloatArray, reach: float, title: str) -> str:
-    """Return the data file: header, box, one mass, positions and velocities."""
+    """Return the text of the LAMMPS data file: header, box, one mass, positions and velocities."""
     n, m = q.shape
     low, high = np.full(3, -0.5), np.full(3, 0.5)
     low[:m], high[:m] = q.min(axis=0) - reach, q.max(axis=0) + reach
@@ -115,7 +115,7 @@ def data_text(q: FloatArray, p: FloatArray, reach: float, title: str) -> str:
 
 
 def script_text(title: str, m: int, table: PairTable, clock: Clock, result: Translation) -> str:
-    """Return the input script, in units lj with masses of 1."""
+    """Return the text of the LAMMPS input script, in units lj with masses of 1."""
     points, reach = len(table.r), float(table.r[-1])
     columns = " ".join([*AXES[:m], *(f"v{x}" for x in AXES[:m]), *(f"f{x}" for x in AXES[:m])])
     boundary = ("s f p", "s s p", "s s s")[m - 1]
@@ -165,7 +165,7 @@ first order in the timestep where this library's methods are of fourth or higher
 
 
 def readme_text(title: str, table: PairTable, clock: Clock, result: Translation) -> str:
-    """Return the README of the folder: contents, what LAMMPS computes, how to read the run."""
+    """Return the text of the export folder's README: contents, what LAMMPS computes, how to read the run."""
     sections = [("Exact", result.exact), ("Nearly", result.near), ("Missing", result.missing)]
     listed = "".join(f"{head}:\n" + "".join(f"  - {text}\n" for text in texts) for head, texts in sections if texts)
     order = "" if result.consensus is None else _FIRST_ORDER

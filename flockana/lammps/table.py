@@ -39,7 +39,7 @@ class PairTable:
 
 
 def pair_table(term: PairTerm, points: int, inner: float) -> PairTable:
-    """Tabulate a pair term from a distance to its range."""
+    """Tabulate a pair term's energy and force from an inner distance to the pair law's range."""
     outer = term.pair.range
     s2 = np.linspace(inner**2, outer**2, points)
     r = np.sqrt(s2)
@@ -62,7 +62,7 @@ def pair_table(term: PairTerm, points: int, inner: float) -> PairTable:
 
 
 def inner_cutoff(term: PairTerm) -> float:
-    """Return the first distance of a table: nearly 0, or a quarter of the law's length if the force is singular."""
+    """Return the first distance of a pair table: nearly 0, or a quarter of the length of a singular law."""
     is_bounded = bool(np.isfinite(term.pair.energy(np.zeros(1))).all())
     return _INNER * term.pair.range if is_bounded else _INNER_SINGULAR * term.pair.length
 

@@ -59,7 +59,7 @@ def _line(q: float, p: float) -> str:
 
 
 def pull_commands(term: Navigation) -> list[str] | None:
-    """Return commands that add the term to the forces, or None without a formula."""
+    """Return LAMMPS commands that add the pull to a γ-agent to the forces; None without a formula."""
     formulas, gains = path(term.target), term.gains
     if formulas is None or gains.per_agent:
         return None

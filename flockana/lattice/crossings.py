@@ -112,7 +112,7 @@ def _squarable(q: FloatArray) -> FloatArray:
 
 
 class _Exact:
-    """Exact arithmetic for near-degenerate decisions, with agents converted on demand."""
+    """Exact integer arithmetic that decides crossings of links where floating point leaves them open."""
 
     def __init__(self, q: FloatArray, links: LinkArray) -> None:
         self._q, self._links, self._m = q, links, q.shape[1]

@@ -24,7 +24,7 @@ _ZERO = 2.0 * float(np.finfo(np.float64).eps)  # of the largest entry of a front
 
 
 class _Front(NamedTuple):
-    """Dense block of an elimination: B⁻¹ = TᵀST with S = ±1, and X = TC with its coupling C to the `boundary`."""
+    """Factors of a dense block (front) of a sparse LDLᵀ factorisation, and its coupling to later rows."""
 
     rows: slice
     boundary: Indices
@@ -60,7 +60,7 @@ class Elimination:
                 self._fronts.append(front)
 
     def solve(self, b: FloatArray) -> FloatArray:
-        """Return A⁻¹ b for a vector, or for the columns of a matrix."""
+        """Return A⁻¹ b of the factorised matrix A, for a vector b or for the columns of a matrix."""
         x = np.array(b[self._order], dtype=np.float64)
         for rows, boundary, t, coupling, signs in self._fronts:
             y = t @ x[rows]
@@ -74,7 +74,7 @@ class Elimination:
         return result
 
     def _eliminated(self, start: int, end: int, below: list[tuple[Indices, FloatArray]]) -> tuple[_Front, FloatArray]:
-        """Assemble one front, eliminate its rows, and return the Schur complement."""
+        """Eliminate the rows of one dense front of the matrix; return the front and the Schur complement."""
         begin, stop = self._matrix.indptr[start], self._matrix.indptr[end]
         columns, values = self._matrix.indices[begin:stop], self._matrix.data[begin:stop]
         rows = np.repeat(np.arange(end - start), np.diff(self._matrix.indptr[start : end + 1]))
@@ -100,7 +100,7 @@ class Elimination:
         return _Front(slice(start, end), boundary, t, x, signs), left
 
     def _pivots(self, block: FloatArray, largest: float) -> tuple[FloatArray, FloatArray | None]:
-        """Return T and S with B⁻¹ = TᵀST, by Cholesky or by eigenvalues."""
+        """Return T and S with B⁻¹ = TᵀST of a pivot block B, by Cholesky or by eigenvalues."""
         from scipy.linalg.lapack import dpotrf, dtrtri
 
         if not len(block):
@@ -128,7 +128,7 @@ def _bottom_up(node: int, leaves: int) -> Iterator[int]:
 
 
 def _dissected(matrix: Any, q: FloatArray, depth: int) -> Indices:
-    """Return the tree node of each agent: a leaf, or the lowest separator that holds it."""
+    """Return each agent's node in the nested-dissection tree: a leaf, or the separator that holds the agent."""
     n, m = q.shape
     i, j = _agents_linked(matrix, m)
     node = np.ones(n, dtype=np.int64)

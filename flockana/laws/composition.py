@@ -304,7 +304,7 @@ def compose(
 
 
 def _ensure_parts(part: str, value: Any, **belonging: Any) -> None:
-    """Raise if an option is given without its part of the law."""
+    """Raise if a gain or option is given without the part of the law to which it belongs."""
     for name, gain in belonging.items():
         if value is None and gain is not None and gain is not False:
             raise ArgumentError(f"{name} = {gain!r} without its part: give {part}=..., or leave {name} out")

@@ -1,4 +1,4 @@
-"""A law whose agents act on the past."""
+"""A law whose agents act on delayed states."""
 
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass

@@ -48,19 +48,19 @@ _SEEN = 0.5  # sight from which on an agent counts as seen, where edges are coun
 
 @dataclass(frozen=True)
 class Reaching(DistanceFunction):
-    """Pair law with another range, where its bump ends; the distance d is unchanged."""
+    """Pair law with an agent's own range, at which its bump function ends; the distance d is unchanged."""
 
     alpha: AlphaInteraction
     r: float
 
     @property
     def range(self) -> float:
-        """Range of an agent."""
+        """Range of sight of an agent, at which its pair force ends."""
         return self.r
 
     @property
     def feature(self) -> float:
-        """Length of repulsion; the ranges are watched by a run's own checks."""
+        """Length of the pair force's repulsion: the distance d, or the range if that is smaller."""
         return min(self.alpha.d, self.r)
 
     def slopes(self, parts: int = 64) -> tuple[SlopeBound, ...]:  # noqa: D102
@@ -134,7 +134,7 @@ class DirectedNet(WrappingLaw):
 
     @property
     def alpha(self) -> AlphaInteraction:
-        """The pair law."""
+        """Olfati-Saber's pair law φ_α among the agents."""
         return paper_pair(self.law)
 
     @property
@@ -153,12 +153,12 @@ class DirectedNet(WrappingLaw):
         )
 
     def features(self) -> tuple[Feature, ...]:
-        """Return the features of the pair law with the agents' ranges, and of the law's other parts."""
+        """Return the narrowest features of the pair law with the agents' ranges, and of the other terms."""
         others = (term for term in self.law.terms if not isinstance(term, PairTerm))
         return (*map(function_feature, self.functions), *(feature for term in others for feature in term.features()))
 
     def _with_range(self, r: float | None) -> DistanceFunction:
-        """Return the pair law with another range, where its bump ends; the distance d is unchanged."""
+        """Return the pair law with range r, at which its bump function ends; the distance d is unchanged."""
         return self.alpha if r is None else Reaching(self.alpha, r)
 
     def check_agents(self, n: int) -> None:  # noqa: D102
@@ -179,7 +179,7 @@ class DirectedNet(WrappingLaw):
         return float((_SLOW * self.law.scales.speed if self.slow is None else self.slow) ** 2)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Return the input, with NaN for the unknown energy rate."""
+        """Return the acceleration u of every agent, with NaN for the unknown energy rate."""
         u, reach = np.zeros(q.shape), self._reach(len(q))
         for term in self.law.terms:
             if isinstance(term, PairTerm):

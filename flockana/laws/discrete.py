@@ -91,7 +91,7 @@ class DiscreteLaw(LawOfMotion):
         """
 
     def iterate(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays, steps: int) -> States:
-        """Return the results of `steps` calls of `step`, stacked along a first axis, unchecked.
+        """Return states, inputs and memories of `steps` successive steps, stacked along a first axis.
 
         A law whose step costs less than a call from Python, and does not hang on the time, overrides both; it must
         give what `step` gives, to the bit.
@@ -107,7 +107,7 @@ class DiscreteLaw(LawOfMotion):
         return self._step_by_step(times, q, p, memory, np.arange(1, steps + 1))
 
     def visit(self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray) -> States:
-        """Return the results of selected steps with given start times.
+        """Return states, inputs and memories after selected steps, for given start times of all steps.
 
         Once the state is not finite it stays so, as the steps in between are not seen. At most `steps_at_once` are
         asked for at a time.
@@ -130,7 +130,7 @@ class DiscreteLaw(LawOfMotion):
     def _step_by_step(
         self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray
     ) -> States:
-        """Return the results of `visit` by repeated calls of `step`."""
+        """Return states, inputs and memories after selected steps, by repeated calls of `step`."""
         states, memories, marks, is_lost = [], [], set(wanted.tolist()), False
         for k, t in enumerate(times[: wanted[-1]].tolist(), 1):
             if not is_lost:
@@ -144,7 +144,7 @@ class DiscreteLaw(LawOfMotion):
         return series_arrays[0], series_arrays[1], series_arrays[2], series
 
     def start(self, q: FloatArray, p: FloatArray) -> Arrays:
-        """Return the memory before the first step; empty by default."""
+        """Return what the map remembers beside (q, p) before the first step; nothing by default."""
         return {}
 
 

@@ -101,7 +101,7 @@ class Disturbed(Wrapper):
         return self.intensity > 0.0
 
     def _pushed(self) -> Iterator[tuple[str, Any]]:
-        """Yield the name and value of each push at time 0, of shape (m,) or (n, m)."""
+        """Yield the name and value of each external force at time 0, of shape (m,) or (n, m)."""
         first_row = None if self.table is None else self.table[0]
         arguments = {"force": self._called(0.0), "swing": self.swing, "table": first_row}
         yield from ((name, push) for name, push in arguments.items() if push is not None)
@@ -132,18 +132,18 @@ class Disturbed(Wrapper):
         return replace(rest.in_units(length, time), force=lambda t: length / time**2 * np.asarray(called(t / time)))
 
     def _called(self, t: float) -> Any:
-        """Return the constant force, or a function's force at a time; None without a force."""
+        """Return the external force, constant or called at a time; None without a force."""
         return _pushes(f"force({t:g})", self.force(t), 1) if callable(self.force) else self.force
 
     def features(self) -> tuple[Feature, ...]:
-        """Return the features of the law and of the push; None width for a function of time."""
+        """Return the narrowest features of the law and of the disturbance in time; unknown for a function."""
         times = [inf, *np.diff([] if self.times is None else self.times)]
         swings = 0.25 / self.frequency if self.swing is not None and self.frequency > 0.0 else inf
         width = None if callable(self.force) else float(min(swings, *times))
         return (*super().features(), Feature("the disturbance", "time", width))
 
     def push(self, t: float) -> FloatArray:
-        """Return w(t) without its noise, shape (m,) or (n, m); 0 without a force."""
+        """Return the disturbance w(t) without its noise, shape (m,) or (n, m); 0 without a force."""
         total: FloatArray = np.zeros(1)
         if self.force is not None:
             total = total + np.asarray(self._called(t))
@@ -171,7 +171,7 @@ class Disturbed(Wrapper):
         return self.intensity * step.h**0.5 * step.normal(self.seed, _NOISE, shape)
 
     def _kicks(self, first: int, count: int, h: float, shape: tuple[int, int]) -> FloatArray:
-        """Return the stacked `kick` of `count` steps of length h from step `first` on."""
+        """Return the velocity changes by noise in `count` steps of length h from step `first` on, stacked."""
         if not self.intensity:
             return np.zeros((count, *shape))
         return self.intensity * h**0.5 * normal_numbers(self.seed, _NOISE, shape, first, count)
@@ -198,7 +198,7 @@ class Disturbed(Wrapper):
         return form._replace(terms=(*form.terms, term))
 
     def _rows(self, m: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the constant push and the amplitudes of cos ωt and sin ωt, each (1, m) or (n, m)."""
+        """Return the constant force and the amplitudes of cos ωt and sin ωt, each (1, m) or (n, m)."""
         force, swing = (np.zeros((1, m)) if x is None else np.atleast_2d(x) for x in (self.force, self.swing))
         force, swing = np.broadcast_arrays(force, swing)
         return force, np.sin(self.phase) * swing, np.cos(self.phase) * swing

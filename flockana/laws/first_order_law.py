@@ -134,7 +134,7 @@ class VelocityLaw(LawOfMotion):
         return q
 
     def start(self, t: float, q: Any, p: Any = None) -> tuple[FloatArray, FloatArray]:
-        """Return positions and velocities of a start.
+        """Return checked initial positions and velocities of a first-order law, the latter from the law.
 
         Parameters
         ----------

@@ -13,7 +13,7 @@ Pieces = npt.NDArray[np.int8]
 
 
 class Margins(NamedTuple):
-    """Distances of pairs from the edges of their pieces (negative beyond), and the side of the nearer edge."""
+    """Distances of pairs from the nearer jump of the force, negative beyond it, and its side."""
 
     inside: FloatArray
     upper: npt.NDArray[np.bool_]
@@ -31,11 +31,11 @@ class SwitchedLaw(Law):
 
     @abstractmethod
     def pieces(self, q: FloatArray) -> Pieces:
-        """Return the piece of every pair."""
+        """Return for every pair the number of its interval of distances between jumps of the force."""
 
     @abstractmethod
     def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Return `flow` with every pair's piece continued smoothly beyond its edges.
+        """Return acceleration and energy rate, each pair's force continued smoothly beyond its jumps.
 
         Parameters
         ----------
@@ -45,7 +45,7 @@ class SwitchedLaw(Law):
 
     @abstractmethod
     def margins(self, pieces: Pieces, q: FloatArray) -> Margins:
-        """Return each pair's distance from leaving its piece.
+        """Return distances of pairs from the nearer jump of the force, negative beyond it, and its side.
 
         Parameters
         ----------
@@ -55,7 +55,7 @@ class SwitchedLaw(Law):
 
     @abstractmethod
     def crossed(self, pieces: Pieces, margins: Margins) -> Pieces:
-        """Return the pieces after every pair with a negative margin has crossed its edge.
+        """Return the interval of each pair after every pair with a negative margin has crossed its jump.
 
         Parameters
         ----------

@@ -169,7 +169,7 @@ class LawOfMotion(ShortRepr, ABC):  # each of its two kinds has an abstract meth
         return tuple(dict.fromkeys(pairs))
 
     def term(self, kind: type[_Term]) -> _Term | None:
-        """Return the first term of a kind, None without one.
+        """Return the law's first term of a given class; None without one.
 
         Parameters
         ----------
@@ -285,7 +285,7 @@ class Law(LawOfMotion):
 
     @property
     def continuous(self) -> Law:
-        """The law itself."""
+        """The law itself, as it is continuous."""
         return self
 
     @abstractmethod
@@ -299,7 +299,7 @@ class Law(LawOfMotion):
         return ensure_finite_scalar("t", t), q, p
 
     def checked_flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
-        """Return `flow`; raise unless it is a real array in the flock's shape and a real number."""
+        """Return `flow`, (u, dH/dt); raise unless u is a real (n, m) array and dH/dt a real number."""
         flow: Any = self.flow(t, q, p)
         name, at = type(self).__name__, f"at t = {t:g}"
         if not isinstance(flow, tuple) or len(flow) != 2:
@@ -340,7 +340,7 @@ class Law(LawOfMotion):
         return None
 
     def compiled_push(self, m: int) -> Compiled | None:
-        """Return the compiled form without the noise that kicks velocities."""
+        """Return the law's compiled form without velocity noise; None if the law has no such form."""
         return self.compiled(m)
 
     def block(self, solver: Any) -> Block | None:

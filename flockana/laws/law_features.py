@@ -27,20 +27,20 @@ class Unknown(NamedTuple):
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """An entry without a function."""
+        """Entry for the functions of the distance that a law or term reads, but does not declare."""
         return (LawFunction(f"what {self.whose} reads", None),)
 
     def features(self) -> tuple[Feature, ...]:
-        """Return a feature of unknown width."""
+        """Return a feature of unknown width, for a law or term that does not declare its functions."""
         return tuple(map(function_feature, self.functions))
 
 
 def function_feature(function: LawFunction) -> Feature:
-    """Return the feature of a function of the distance."""
+    """Return the narrowest feature of a function of the distance of two agents."""
     width = None if function.function is None else function.function.feature
     return Feature(function.name, "pairs", width, function)
 
 
 def target_feature(target: Target | Copies) -> Feature:
-    """Return the feature in time of a γ-agent, or of its copies."""
+    """Return the narrowest feature in time of the motion of a γ-agent, or of its copies."""
     return Feature("the γ-agent", "time", target.feature)

@@ -110,7 +110,7 @@ class Algorithm2(GainedLaw):
         return self.pair_term, Navigation(self.target, self.gains)
 
     def structural_energy(self, q: Any, p: Any) -> float:
-        """Return H_λ(x, v), which equals `energy`, as that is in the moving frame already.
+        """Return the structural energy H_λ(x, v), which equals `energy`, both in the moving frame.
 
         Parameters
         ----------

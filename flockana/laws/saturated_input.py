@@ -61,7 +61,7 @@ class Saturated(Wrapper):
     stepped = False
 
     def bounded(self, u: FloatArray) -> FloatArray:
-        """Return an input within the limit.
+        """Return inputs whose length, or whose components, are cut to the limit.
 
         Parameters
         ----------
@@ -83,7 +83,7 @@ class Saturated(Wrapper):
         return bounded_input, rate + float(np.sum((bounded_input - u) * velocity))
 
     def slopes(self, u: FloatArray) -> FloatArray:
-        """Return the derivative of `bounded`, shape (n, m, m): 1 within the limit; raise exactly at the limit.
+        """Return the derivatives of bounded inputs by unbounded ones, (n, m, m); raise exactly at the limit.
 
         Parameters
         ----------

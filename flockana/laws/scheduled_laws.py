@@ -50,12 +50,12 @@ class _Turns:
         return np.concatenate([[0.0], np.cumsum(self.lengths)])
 
     def _begin(self, turn: int) -> float:
-        """Return the start time of a turn, counted from 0."""
+        """Return the time at which a turn begins, where turns are numbered from 0."""
         rounds, law_index = divmod(turn, len(self.laws))
         return self.since + float(self._ends[law_index] + (rounds * self._ends[-1] if rounds else 0.0))
 
     def _turn(self, t: float) -> int:
-        """Return the number of the turn at a time; the earlier one at a switch."""
+        """Return the number of the turn, counted from 0, at a time; the earlier turn at a switch."""
         turn_number = len(self.laws) * max(0, int((t - self.since) / self._ends[-1]) - 1)
         while self._begin(turn_number + 1) < t:
             turn_number += 1
@@ -144,7 +144,7 @@ class InTurn(_Turns, Law):  # type: ignore[override]
         return self.acting(t).flow(t, q, p)[0], float("nan")
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Any:
-        """Return the derivatives of the acting law at a time."""
+        """Return (∂u/∂q, ∂u/∂p) of the law that acts at a time."""
         return self.acting(t).derivatives(t, q, p)
 
 
@@ -177,7 +177,7 @@ class VelocityInTurn(_Turns, VelocityLaw):  # type: ignore[override]
         return v
 
     def slopes(self, t: float, q: FloatArray) -> Any:
-        """Return the slopes of the acting law at a time."""
+        """Return ∂velocity/∂q of the law that acts at a time."""
         return self.acting(t).slopes(t, q)
 
     def acceleration(self, t: float, q: FloatArray) -> FloatArray:

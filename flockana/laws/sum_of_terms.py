@@ -75,7 +75,7 @@ class SumOfTerms(Law):
         return None if form.reach and any(kernel.numbered for kernel in kernels) else form
 
     def potential_energy(self, t: float, q: FloatArray) -> float:
-        """Σ U^T, unchecked."""
+        """Potential energy Σ U^T over the law's terms, unchecked."""
         return float(sum(term.energy(t, q) for term in self.terms))
 
     def hamiltonian(self, t: float, q: FloatArray, p: FloatArray) -> float:  # noqa: D102

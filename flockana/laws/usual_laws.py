@@ -11,7 +11,7 @@ from flockana.laws.olfati_saber import Algorithm1
 
 @dataclass(frozen=True)
 class Candidate:
-    """Law without a target, with the scale of a flock for a trial."""
+    """Law without a target to be tried on a flock, with the distance of neighbours and the duration of a trial."""
 
     law: type[Law]
     length: float = 7.0  # distance of neighbours

@@ -86,20 +86,20 @@ def _normal_block(seed: int, channel: int, block: int, shape: tuple[int, ...]) -
 
 
 def normal_numbers(seed: int, channel: int, shape: tuple[int, ...], first: int, count: int) -> FloatArray:
-    """Return the stacked `Step.normal` numbers of the steps from `first` on."""
+    """Return the standard normal random numbers of `count` steps from step `first` on, stacked."""
     blocks = range(first // _BLOCK, (first + count - 1) // _BLOCK + 1)
     normal_samples = np.concatenate([_normal_block(seed, channel, block, shape) for block in blocks])
     return normal_samples[first % _BLOCK :][:count]
 
 
 class HearingLaw(Law):
-    """Law without terms, with an input from heard differences to neighbours alone."""
+    """Law whose input uses only differences to neighbours' states as received by each agent."""
 
     @abstractmethod
     def heard_input(
         self, own: tuple[FloatArray, FloatArray], heard: tuple[FloatArray, FloatArray], linked: Any
     ) -> FloatArray:
-        """Return accelerations from own and heard positions and velocities of a `View`, unchecked.
+        """Return accelerations from each agent's own and received positions and velocities, unchecked.
 
         Parameters
         ----------
@@ -119,7 +119,7 @@ class WrappingLaw(Law):
 
     @property
     def references(self) -> tuple[str, ...]:  # type: ignore[override]  # those of the law
-        """Keys of the inner law's bibliography."""
+        """Keys of the wrapped law's bibliography."""
         return self.law.references
 
     @property
@@ -131,7 +131,7 @@ class WrappingLaw(Law):
         return self.law.surfaces
 
     def switches(self, start: float, stop: float) -> FloatArray:
-        """Return the switching times of the inner law.
+        """Return the switching times of the wrapped law within a time span.
 
         Parameters
         ----------
@@ -205,12 +205,12 @@ class Wrapper(WrappingLaw):
 
     @property
     def memory(self) -> float:
-        """Return the longest memory of the law."""
+        """Longest time into the past from which the law uses states, its greatest delay; 0 without delay."""
         return 0.0
 
     @property
     def clocks(self) -> tuple[float, ...]:
-        """Periods that a step must divide."""
+        """Periods of the law, such as a sampling period, that must be whole multiples of the time step."""
         return ()
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
@@ -268,7 +268,7 @@ def input_of(law: Law | VelocityLaw, step: Step, view: View) -> FloatArray:
 
 
 def _heard_input(law: Law, view: View) -> FloatArray:
-    """Return the input of a sum of terms, with pair terms evaluated on each agent's heard states."""
+    """Return the input of a law that is a sum of terms, with pair terms evaluated on received states."""
     u, n = np.zeros_like(view.q), len(view.q)
     heard = (view.q[None], view.p[None]) if view.heard is None else view.heard
     if isinstance(law, HearingLaw):
@@ -300,7 +300,7 @@ def _has_pairs(law: Any) -> bool:
 
 
 def _input_of_each(law: Law, view: View, heard: tuple[FloatArray, FloatArray]) -> FloatArray:
-    """Return the input of any law, evaluated agent by agent with own states known and others' states heard."""
+    """Return the input of any law, evaluated agent by agent from own states and others' states as received."""
     n, u = len(view.q), np.empty_like(view.q)
     q, p = (np.broadcast_to(part, (n, *view.q.shape)) for part in heard)
     for i in range(n):
@@ -310,7 +310,7 @@ def _input_of_each(law: Law, view: View, heard: tuple[FloatArray, FloatArray]) -
 
 
 def _own(view: View, heard: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:
-    """Return each listener's own position and velocity."""
+    """Return each agent's own position and velocity, as used in its differences to received states."""
     if not view.both:
         return view.q, view.p
     n = len(view.q)
@@ -319,7 +319,7 @@ def _own(view: View, heard: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, 
 
 
 def _pair_weights(term: PairTerm, here: FloatArray, away: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return φ n per difference and a_ij of pairs at given differences."""
+    """Return the factor of q_j − q_i in the pair force, and the weight a_ij, at given position differences."""
     index = np.arange(len(here))
     weight, adjacency, _ = term.pair.kernels.terms(
         np.vstack([here, here + away]), index, len(index) + index, term.pair.par
@@ -328,7 +328,7 @@ def _pair_weights(term: PairTerm, here: FloatArray, away: FloatArray) -> tuple[F
 
 
 def ensure_hears(law: Law | VelocityLaw) -> None:
-    """Raise unless the law's pair terms are known, so that heard states can be used in them alone."""
+    """Raise unless the law's pair terms are known, so that received states can be used in these terms alone."""
     core = law.core if isinstance(law, Wrapper) else law
     if not isinstance(core, HearingLaw) and not _has_pairs(core):
         raise ArgumentError(

@@ -81,7 +81,7 @@ def clearance(
 
 
 def _least_clearances(obstacle: Obstacle, points: FloatArray) -> FloatArray:
-    """Return exact signed distances near the least one, and lower bounds elsewhere."""
+    """Return points' signed distances to an obstacle, exact where one may be least, lower bounds elsewhere."""
     centre, radius = obstacle.ball
     offsets = points - centre
     distance: FloatArray = np.sqrt(np.einsum("km,km->k", offsets, offsets)) - radius
@@ -93,7 +93,7 @@ def _least_clearances(obstacle: Obstacle, points: FloatArray) -> FloatArray:
 
 
 class _CurveMinimum(NamedTuple):
-    """Minimum over curves: a lower bound, the least known value, its parameter and curve."""
+    """Least clearance over curves: lower bound, least known value, and the curve and parameter where it occurs."""
 
     lower: float
     value: float
@@ -102,7 +102,7 @@ class _CurveMinimum(NamedTuple):
 
 
 class _Minimum:
-    """Running minimum of the clearance from one obstacle, starting with the samples."""
+    """Running minimum of the clearance from one obstacle, at first that of the samples."""
 
     def __init__(self, t: FloatArray, at_samples: FloatArray) -> None:
         k, self.agent = divmod(int(np.argmin(at_samples)), at_samples.shape[1])
@@ -110,7 +110,7 @@ class _Minimum:
         self.lower = self.reached = float(at_samples[k, self.agent])
 
     def update(self, bound: _CurveMinimum, t: FloatArray, interval: Any, agent: Any) -> None:
-        """Lower the least clearance where some agents may come closer between samples."""
+        """Update the least clearance and its lower bound from a bound on agents' curves between samples."""
         self.lower = min(self.lower, bound.lower)
         if bound.value < self.reached:
             k, self.agent = int(interval[bound.curve]), int(agent[bound.curve])
@@ -118,7 +118,7 @@ class _Minimum:
 
 
 def refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best: float, tol: float) -> _CurveMinimum:
-    """Bound the clearance along curves by halving; the bound is `best` if nothing lower is possible."""
+    """Return bounds of the least clearance along curves by bisection; the lower one is `best` if none is lower."""
     proven_bound, value, best_time, curve_number = best, inf, 0.0, -1
     curve_indices, start, width = np.arange(len(curves)), np.zeros(len(curves)), 1.0
     for depth in range(_DEPTH):
@@ -146,7 +146,7 @@ def refine(obstacle: Obstacle, curves: FloatArray, allowance: FloatArray, best: 
 def bounds_over_hull(
     obstacle: Obstacle, curves: FloatArray, middle: FloatArray, tol: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the signed distance at a point of each curve's hull, and its lower bound over the hull."""
+    """Return the signed distance at a point of each curve's convex hull, and a lower bound over the whole hull."""
     gap, _, distance = obstacle._project(middle, np.zeros_like(middle))
     hull = curves - middle[:, None, :]
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -25,14 +25,14 @@ class Flock:
 
     @cached_property
     def nets(self) -> FloatArray:
-        """C, C* and E of the net at each instant, shape (3, T); E only where the law has a lattice scale d."""
+        """Connectivity C, largest-component share C* and (given a lattice scale d) deviation energy E, (3, T)."""
         r = self.law.pair.range
         d = r if self.law.lattice is None else self.law.lattice[0]
         return nets(self.q, d, r)
 
 
 class Series(NamedTuple):
-    """Measure of a law's own runs: values, or a function that computes them."""
+    """Time series that a law defines for its own runs: text, values or a function for them, and axis scale."""
 
     text: str
     values: FloatArray | Callable[[], FloatArray]

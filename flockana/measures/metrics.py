@@ -128,7 +128,7 @@ def min_distance(q: Any) -> float:
 
 
 def diameter(x: Any) -> float:
-    """Return the greatest distance between two rows: the diameter of positions or of velocities.
+    """Return the greatest distance between two agents' positions, or between two agents' velocities.
 
     Parameters
     ----------
@@ -207,13 +207,13 @@ def pairs_at_one_place(q: Any) -> int:
 
 @check_kinds
 def nets(q: FloatArray, d: float, r: float) -> FloatArray:
-    """Return `net_measures` over time, unchecked: C, C* and E, shape (3, T)."""
+    """Return connectivity C, largest-component share C* and deviation energy E at each instant, shape (3, T)."""
     return np.array([_net_measures(x, d, r) for x in q]).T
 
 
 @check_kinds
 def cohesion_radii(q: FloatArray) -> FloatArray:
-    """Return `cohesion_radius` over time, unchecked."""
+    """Return the cohesion radius max_i ‖q_i − q_c‖ at each instant, without checks of the input."""
     q, _, unit = scaled_near_one(q)
     return lengths(_centred(q)).max(axis=1) * unit
 
@@ -232,7 +232,7 @@ def spreads(x: FloatArray) -> FloatArray:
 
 @check_kinds
 def min_distances(q: FloatArray) -> FloatArray:
-    """Return `min_distance` over time, unchecked."""
+    """Return the least distance between two agents at each instant, without checks of the input."""
     q, _, unit = scaled_near_one(q)
     if q.shape[1] < _TREE:
         return least_distances(q) * unit
@@ -243,7 +243,7 @@ def min_distances(q: FloatArray) -> FloatArray:
 
 @check_kinds
 def diameters(x: FloatArray) -> FloatArray:
-    """Return `diameter` over time, unchecked, from agents far from the centre.
+    """Return the greatest distance of two agents' positions or velocities at each instant, unchecked.
 
     Parameters
     ----------
@@ -256,13 +256,13 @@ def diameters(x: FloatArray) -> FloatArray:
 
 @check_kinds
 def orders(p: FloatArray) -> FloatArray:
-    """Return `order` over time, unchecked."""
+    """Return the polar order ‖Σ p_i/‖p_i‖‖/n at each instant, without checks of the input."""
     return lengths(centres(_headings(p)))
 
 
 @check_kinds
 def coordinations(p: FloatArray) -> FloatArray:
-    """Return `coordination` over time, unchecked."""
+    """Return the mean cosine between velocities of pairs of moving agents at each instant, unchecked."""
     k = np.count_nonzero(np.any(p != 0.0, axis=2), axis=1)
     # |Σ ĥ|² counts every pair twice and every agent once
     doubled_sum = np.sum(_headings(p).sum(axis=1) ** 2, axis=1) - k
@@ -274,7 +274,7 @@ def _centred(x: FloatArray) -> FloatArray:
 
 
 def _headings(p: FloatArray) -> FloatArray:
-    """Return directions of motion; 0 for agents at rest."""
+    """Return unit vectors along the agents' velocities; 0 for agents at rest."""
     with np.errstate(over="ignore"):
         speed = lengths(p)
     is_extreme = ~((speed > _SQUARED[0]) & (speed < _SQUARED[1]))

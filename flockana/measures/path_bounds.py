@@ -63,7 +63,7 @@ def closest_approach(
 
 
 def _nearer(t: FloatArray, states: States, slack: FloatArray, stops: FloatArray, noises: FloatArray) -> Iterator[Any]:
-    """Yield (interval, lower bound, distance, share, i, j) where a pair may come nearer than at both ends."""
+    """Yield (interval, lower bound, distance, fraction, i, j) where a pair may be nearer than at interval ends."""
     q, p, u = (np.ascontiguousarray(x) for x in states)
     if q.shape[1] <= DENSE_MAX:  # a loop over intervals in Python would take ten times as long
         tols = np.maximum(RELATIVE_TOL * stops, noises)
@@ -85,7 +85,7 @@ def _nearer(t: FloatArray, states: States, slack: FloatArray, stops: FloatArray,
 
 
 def _pair_at(q: FloatArray, distance: float) -> tuple[int, int]:
-    """Return a pair at the given least distance of a configuration."""
+    """Return two agents (i, j) at the given least distance of a configuration; (−1, −1) without such a pair."""
     for i, j in pair_blocks(q, np.nextafter(distance * (1.0 + 1e-12), np.inf)):
         if i.size:
             return int(min(i[0], j[0])), int(max(i[0], j[0]))

@@ -12,7 +12,7 @@ from flockana.measures.nets import components, link_lengths, links
 
 
 def _mismatch(flock: Flock) -> FloatArray:
-    """Return K̃ = K/n."""
+    """Return the velocity mismatch per agent, K̃ = K/n, at each instant."""
     return metrics.spreads(flock.p) / flock.p.shape[1]
 
 

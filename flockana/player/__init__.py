@@ -31,7 +31,7 @@ class Player:
         normalise(self, ensure_count, "height", "values")
 
     def __repr__(self) -> str:
-        """Return a one-line description."""
+        """Return a one-line description of the player and its run."""
         return f"<Player of {self.trajectory!r}>"
 
     def html(self) -> str:

@@ -33,19 +33,19 @@ def style() -> str:
 
 
 def text_of(data: bytes) -> str:
-    """Return bytes as text that can be embedded in a page."""
+    """Return bytes as Base64 text that can be embedded in an HTML page."""
     return base64.b64encode(data).decode("ascii")
 
 
 def played(data: bytes) -> str:
-    """Return the page elements that play a run in the element ``player``."""
+    """Return the HTML script elements that play an encoded run in the page element ``player``."""
     start = "flockanaPlayer(document.getElementById('player'),bytesOfText(document.getElementById('run').textContent));"
     run = f'<script type="text/plain" id="run">{text_of(data)}</script>'
     return f"{run}<script>(() => {{\n{script()}{start}\n}})();</script>"
 
 
 def framed(title: str, html: str, height: int) -> str:
-    """Return an element that holds a page with scripts, for a notebook."""
+    """Return an HTML iframe that holds a page with its scripts, for display in a notebook."""
     look = f"width:100%;height:{height}px;border:0"
     return f'<iframe title="{escape(title)}" sandbox="allow-scripts" style="{look}" srcdoc="{escape(html)}"></iframe>'
 

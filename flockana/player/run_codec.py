@@ -23,14 +23,14 @@ _STEPS = 2.0**30  # more of them in one array than this would not fit 32 bits
 
 @dataclass(frozen=True)
 class Packed:
-    """Array for encoding."""
+    """Array to be encoded for a page: numbers with time as their first axis, and the resolution to keep."""
 
     values: Any  # shape (T, …): numbers; the first axis is time
     step: float = 0.0  # resolution to which they are kept, > 0; or 0 for that of float32
 
 
 def encode(header: Mapping[str, Any], arrays: Mapping[str, Packed]) -> bytes:
-    """Return a header and arrays as bytes."""
+    """Return a header and named arrays encoded as compressed bytes for the player's page."""
     entries, bodies = [], []
     for name, packed_array in arrays.items():
         values = np.asarray(packed_array.values, dtype=np.float64)
@@ -69,7 +69,7 @@ def decode(data: bytes) -> tuple[dict[str, Any], dict[str, FloatArray]]:
 
 
 def _quantise(name: str, values: FloatArray, step: float) -> tuple[Any, float]:
-    """Return an array as 32-bit integers, and the subtracted origin."""
+    """Return an array encoded as 32-bit integers, and the origin subtracted from its values."""
     with np.errstate(over="ignore"):
         single_precision = values.astype("<f4")
     if not np.isfinite(single_precision).all():

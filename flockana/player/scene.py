@@ -42,7 +42,7 @@ _EXTREME = 1e30  # beyond it a number is shown as if it were this
 
 @dataclass(frozen=True)
 class World:
-    """Surroundings of the agents: obstacles, targets and aliens."""
+    """Surroundings of the agents in the player's scene: links, obstacles, targets and alien agents."""
 
     # reach, length: Agents nearer than the first are linked, and the links coloured by their strain about the second
     reach: float | None = None
@@ -78,7 +78,7 @@ def scene(
     title: str = "",
     marks: Iterable[tuple[float, str]] = (),
 ) -> bytes:
-    """Return a run in the player's format."""
+    """Return a run encoded as bytes in the format of the interactive player."""
     frames = kept(len(run.t), max(2, values // (2 * run.n * run.m)))
     _register_scenes()
     surroundings = world(run.law.continuous or run.law, run, frames)
@@ -116,7 +116,7 @@ def scene(
 
 @cache
 def _register_scenes() -> None:
-    """Register the worlds of the sources' laws."""
+    """Register the functions that return the surroundings of agents, for the laws of the sources."""
     for module in source_modules("scene"):
         for law, draw in module.SCENE.items():
             world.register(law, draw)
@@ -134,7 +134,7 @@ def kept(samples: int, most: int) -> npt.NDArray[np.intp]:
 
 
 def _series(run: Trajectory) -> list[tuple[str, str, bool, FloatArray]]:
-    """Return (name, label, logarithmic, values) of each series of the strip."""
+    """Return (name, label, logarithmic, values) of each time series that the player shows as a curve."""
     rows = []
     energy = run.energy()
     if np.isfinite(energy).any():

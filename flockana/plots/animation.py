@@ -205,19 +205,19 @@ class GifWriter(AbstractMovieWriter):
     """Writer that collects frames and saves them as a GIF that repeats."""
 
     def setup(self, fig: Any, outfile: Any, dpi: float | None = None) -> None:
-        """Begin a film."""
+        """Begin a film of a figure with no frames yet, for output to a file."""
         super().setup(fig, outfile, dpi=dpi)
         self._images: list[Image.Image] = []
 
     def grab_frame(self, **savefig_kwargs: Any) -> None:
-        """Take the figure as the next frame."""
+        """Render the figure and append the picture as the next frame of the film."""
         with BytesIO() as data:
             self.fig.savefig(data, **{**savefig_kwargs, "format": "rgba", "dpi": self.dpi})
             frame = Image.frombytes("RGBA", self.frame_size, data.getvalue())
         self._images.append(frame.convert("RGB"))
 
     def finish(self) -> None:
-        """Write the file."""
+        """Write the collected frames to the GIF file."""
         first_image, *later_images = self._images
         times = durations(len(self._images), self.fps)
         first_image.save(self.outfile, "GIF", save_all=True, append_images=later_images, duration=times, loop=0)

@@ -45,7 +45,7 @@ def _typeset(text: str) -> bool:
 
 @dataclass(frozen=True)
 class Ticks:
-    """Ticks of one kind, major or minor."""
+    """Major or minor ticks of one axis: positions, number texts, mark sizes, and whether they have grid lines."""
 
     at: FloatArray  # pixels along the scale
     numbers: tuple[str, ...]  # as many; empty texts where there is none
@@ -75,7 +75,7 @@ class PlainScale(Artist):
         self.set_clip_on(False)
 
     def ticks(self, which: str) -> Ticks:
-        """Return the major or minor ticks within the limits."""
+        """Return the major or minor ticks of the axis that lie within its limits."""
         scale, look = self.scale, self.scale.get_tick_params(which)
         values = np.asarray(getattr(scale, f"get_{which}ticklocs")(), dtype=np.float64)
         formatter = getattr(scale, f"get_{which}_formatter")()
@@ -93,12 +93,12 @@ class PlainScale(Artist):
         return Ticks(at[inside_limits], texts, length * self._pixel, width, pad * self._pixel, bool(look["gridOn"]))
 
     def _style(self, key: str) -> Any:
-        """Return the style's settings of the ticks of this scale."""
+        """Return a setting of matplotlib's style for the ticks of this axis, such as their colour."""
         plot_style: dict[str, Any] = mpl.rcParams  # type: ignore[assignment]  # its stubs take no names made here
         return plot_style[f"{self.name}tick.{key}"]
 
     def room(self, renderer: Any) -> tuple[float, float, float, float]:
-        """Return the pixels needed by the scale left of, right of, below and above its axes."""
+        """Return the pixels that the axis's ticks and labels need left, right, below and above the plot."""
         kinds, ends = self._kinds(), (0.0, 0.0)
         low, high = getattr(self.ax.bbox, f"interval{self.name}")
         for position, text in (pair for ticks in kinds for pair in ticks.numbered):
@@ -123,7 +123,7 @@ class PlainScale(Artist):
         return self.ticks("major"), self.ticks("minor")
 
     def _power(self) -> str:
-        """Return the common power of ten of the tick numbers, as last written."""
+        """Return the common power of ten of the axis's tick numbers as text, as last formatted."""
         return plain(self.scale.get_major_formatter().get_offset())
 
     @property
@@ -148,7 +148,7 @@ class PlainScale(Artist):
         return width, max(height, own_height), max(descent, own_descent)
 
     def _depth(self, renderer: Any, kinds: tuple[Ticks, ...]) -> float:
-        """Return the pixels from the axes to the far side of marks and numbers."""
+        """Return the distance in pixels from the plot's edge to the outer side of tick marks and numbers."""
         depth = 0.0
         for ticks in (ticks for ticks in kinds if ticks.at.size):
             texts = [text if self.name == "y" else "lp" for text in ticks.numbers if text]
@@ -226,7 +226,7 @@ class PlainScale(Artist):
         self._write(renderer, x, y, label.get_text(), (label.get_fontproperties(), label.get_color(), angle))
 
     def _write(self, renderer: Any, x: float, y: float, text: str, look: tuple[Any, str, float] | None = None) -> None:
-        """Write a text, by default a number, starting at its lower left corner."""
+        """Draw a text with its lower left corner at (x, y), by default in the style of tick numbers."""
         font, colour, angle = look or (self.font, self._style("color"), 0.0)
         context = renderer.new_gc()
         context.set_foreground(colour)

@@ -76,7 +76,7 @@ class _Curve(NamedTuple):
 
 
 def _curves(label: str, response: Any) -> list[_Curve]:
-    """Return the scalar responses from each input to each output."""
+    """Return the scalar frequency responses from each input to each output of a multivariable response."""
     if not (hasattr(response, "omega") and hasattr(response, "complex")):
         what = f"responses[{label!r}] = {format_value(response)}"
         raise ArgumentError(f"{what}: expected a frequency response, as of Linearisation.response or CentreOfMass")

@@ -47,7 +47,7 @@ def linear_range(
 
 @check_kinds
 def measured_gains(points: Mapping[str, tuple[float, float]], *, ax: Axes | None = None) -> Axes:
-    """Draw measured ratios of sizes as points on a Bode plot's magnitude.
+    """Draw measured ratios of the flock's path size to the γ-agent's as points on a Bode magnitude plot.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ def diameters(trajectory: Trajectory, ax: Any) -> None:
 
 @over_time("C, relative connectivity")
 def joint_windows(trajectory: Trajectory, ax: Any) -> None:
-    """Draw C over time above bands for the shortest contiguous windows that connect all agents jointly.
+    """Draw connectivity C over time above bands for the shortest windows that connect all agents jointly.
 
     Bands are grey and white in turn; what is left after the last of them is hatched.
     """

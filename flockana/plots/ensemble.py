@@ -202,7 +202,7 @@ def phase_diagram(
     title: str = "",
     labels: Sequence[str] = ("", ""),
 ) -> Axes:
-    """Draw the phases in which runs ended over two parameters; cells show the shares of their seeds.
+    """Draw over two parameters the phases in which runs ended; a cell shows the share of seeds in each phase.
 
     Parameters
     ----------

@@ -46,5 +46,5 @@ class Film:
         return animate(self.trajectory, path, **self._options)
 
     def _repr_html_(self) -> str:
-        """Return the player, a hundredth of the film's frames as pictures."""
+        """Return the HTML of the interactive player of the film's run, for a notebook."""
         return str(self.trajectory.player()._repr_html_())

@@ -80,7 +80,7 @@ def _draw(ax: Any, solid: Obstacle, view: FloatArray) -> None:
 
 
 def _nearest_points(solid: Obstacle, around: FloatArray) -> tuple[FloatArray, Any]:
-    """Return the closest points of the solid, and whether each given point is inside."""
+    """Return the point of a solid obstacle nearest to each given point, and whether the given point is inside."""
     foot = solid.beta_agents(around, np.zeros_like(around))
     is_inside = foot.clearance <= 0.0
     return np.where(is_inside[:, None], around, foot.q), is_inside

@@ -68,7 +68,7 @@ def potential(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
 
 @check_kinds
 def deviation(interaction: AlphaInteraction, *, ax: Axes | None = None) -> Axes:
-    """Draw E and V of a pair against its distance, relative to their values at 0: E jumps at r, V is continuous.
+    """Draw deviation energy E and potential V of a pair over its distance, relative to their values at 0.
 
     To the left of 0 one agent has passed through the other.
     """

@@ -157,7 +157,7 @@ class OverTime(Protocol):
     """Plot function of a run over time."""
 
     def __call__(self, trajectory: Trajectory, *, ax: Axes | None = None) -> Axes:
-        """Draw on axes, or on new ones."""
+        """Draw a run over time on the given axes, or on new ones."""
 
 
 def over_time(label: str) -> Callable[[Callable[[Trajectory, Any], str | None]], OverTime]:

@@ -58,7 +58,7 @@ def _spans_decades(values: Any) -> bool:
 
 
 def _shade_floor(trajectory: Trajectory, name: str, values: Any, ax: Any) -> None:
-    """Shade the band below the solver's error of one step."""
+    """Shade the values of a measure that are below the effect of the solver's error of one step."""
     position_error, speed, _ = trajectory.floors
     d = trajectory.scales.length
     floor = {
@@ -72,7 +72,7 @@ def _shade_floor(trajectory: Trajectory, name: str, values: Any, ax: Any) -> Non
 
 
 def panel(trajectory: Trajectory, *, ax: Any = None) -> Any:
-    """Draw C, R, Ẽ and K̃ (logarithmic) side by side.
+    """Draw connectivity C, cohesion radius R, deviation energy Ẽ and velocity mismatch K̃ in four panels.
 
     Parameters
     ----------

@@ -53,7 +53,7 @@ def _widen(ax: Any, points: FloatArray, trajectory: Trajectory) -> None:
 
 
 def _plane(t: FloatArray, x: FloatArray) -> FloatArray:
-    """Return a path as points to draw: (t, x) on a line."""
+    """Return the points of a path to draw: (t, x) for motion on a line, else the positions."""
     return np.column_stack([t, x]) if x.shape[1] == 1 else x
 
 

@@ -31,7 +31,7 @@ class Accelerations(NamedTuple):
     scheme: str | None
 
     def of(self, part: Any) -> FloatArray:
-        """Return the accelerations of a part of a law at the same states and times."""
+        """Return the accelerations by a part of a law at the states and times of the recorded accelerations."""
         return over_steps(part, *self.states) if self.basis == "steps" else over_samples(part, *self.states)
 
     @property
@@ -87,7 +87,7 @@ def drawn_errors(rec: Recording, fit: Motions | None = None) -> list[tuple[Float
 
 
 def noisy_twins(rec: Recording, data: Accelerations, law: Any) -> list[tuple[Accelerations, Any]]:
-    """Return what a flock under the law itself would show with the stated errors, in a few draws, and the law."""
+    """Return (accelerations, law) for a few draws of the stated errors, as if the flock obeyed the law exactly."""
     fit = motions(rec) if data.basis == "splines" else None
     rows = slice(len(data.t)) if fit is None else fit.known.all(axis=1)
     (t, q, p), exact, rng = data.states, data.of(lambda *state: law.flow(*state)[0]), np.random.default_rng(1)

@@ -16,7 +16,7 @@ CONFIDENCE = 0.99  # of the band that holds of all samples at once
 
 @dataclass(frozen=True, eq=False)
 class Accuracy:
-    """Half widths of recorded positions and velocities, and their origin.
+    """Error bounds (half widths) of recorded positions and velocities, and whether stated or estimated.
 
     Parameters
     ----------

@@ -82,7 +82,7 @@ class Comparison(ShortRepr):
 
     @property
     def worst(self) -> tuple[tuple[float, str, float], ...]:
-        """Largest residuals: time, agent, size."""
+        """Largest residual accelerations, each as (time, agent, size)."""
         residual_norms = np.nan_to_num(lengths(self.residual))
         order = np.argsort(-residual_norms, axis=None)[:_WORST]
         worst_indices = [np.unravel_index(k, residual_norms.shape) for k in order]
@@ -104,7 +104,7 @@ class Comparison(ShortRepr):
         return "\n".join(lines)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain data."""
+        """Return the comparison as a dictionary of plain data."""
         names = ("basis", "explained", "explained_refitted", "caution")
         return {
             "law": self.law.title,
@@ -119,7 +119,7 @@ def _percent(share: float) -> str:
 
 
 def share_text(explained: float) -> str:
-    """Return the explained share in words; "nothing" for a residual larger than the accelerations.
+    """Return the explained share of accelerations in per cent, or 'nothing' where the residual is larger.
 
     Examples
     --------
@@ -197,7 +197,7 @@ def _position_finding(rec: Recording, led: FloatArray, by: str) -> str:
     is_known = ~np.isnan(steps + led)
 
     def factor(part: Any) -> float | None:
-        """Return the ratio over a part of the displacements; 1 if they agree, None if they tell none."""
+        """Return the ratio of recorded to predicted displacements in a selection; 1 if near, None if undefined."""
         x, y = steps[is_known & part], led[is_known & part]
         if not (x @ x > 0.0 and y @ y > 0.0):
             return None
@@ -207,7 +207,7 @@ def _position_finding(rec: Recording, led: FloatArray, by: str) -> str:
         return 1.0 if is_right else ratio
 
     def agrees(part: Any) -> bool:
-        """Return whether displacements are as predicted, up to a tenth of their squares."""
+        """Return whether displacements in a selection are as predicted, up to a tenth of their squares."""
         x, y = steps[is_known & part], led[is_known & part]
         return bool(np.sum((x - y) ** 2) <= 0.1 * (x @ x) > 0.0)
 

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 
 def largest_complete_part(present: npt.NDArray[np.bool_]) -> tuple[slice, npt.NDArray[Any]]:
-    """Return consecutive samples, and the agents seen at all of them, with the most positions.
+    """Return the consecutive samples and the agents, without gaps, that hold the most positions together.
 
     Examples
     --------

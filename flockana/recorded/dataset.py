@@ -13,7 +13,7 @@ _NAMES = {"q": "position", "p": "velocity", "u": "acceleration"}
 
 
 def dataset_of(rec: Samples) -> "xarray.Dataset":
-    """See `Recording.to_xarray`."""
+    """Return a recording as an `xarray.Dataset` in the layout of the package `movement`."""
     import xarray
 
     dims = ("time", "space", "individuals")

@@ -164,7 +164,7 @@ class _Search(NamedTuple):
         return self.rec.sd is not None and not self.rec.estimated and float(np.max(self.rec.sd)) > 0.0
 
     def problem(self, parts: list[Window]) -> Problem:
-        """Return the problem of matching windows."""
+        """Return the least-squares problem of matching given windows by solutions of the law."""
         return Problem(parts, self.parameters.with_values, self.parameters.values)
 
     def is_chance(self, variance: float, freedom: float) -> bool:
@@ -175,7 +175,7 @@ class _Search(NamedTuple):
 
 
 def _best_of(search: _Search, sd: FloatArray) -> tuple[Problem, MatchResult]:
-    """Return the best match of several searches, the first from the law's own parameters."""
+    """Return the best fit of several searches, the first of which starts from the law's own parameters."""
     matches: list[tuple[Problem, MatchResult]] = []
     for begin in _beginnings(search):
         try:
@@ -203,7 +203,7 @@ def _beginnings(search: _Search) -> list[FloatArray]:
 
 
 def _lengthened(search: _Search, sd: FloatArray, begin: FloatArray) -> tuple[Problem, MatchResult]:
-    """Return the match over windows of the usual length, started from the parameters of short windows.
+    """Return the fit over windows of the usual length, started from the parameters fitted to short windows.
 
     Long windows tell more of the parameters and have more false minima: where they fit worse than the short ones, the
     short ones count.
@@ -222,7 +222,7 @@ def _lengthened(search: _Search, sd: FloatArray, begin: FloatArray) -> tuple[Pro
 
 
 def _with_noise(search: _Search, independent: bool) -> tuple[Problem, MatchResult]:
-    """Return the match with the stated noise, else with estimated deviations of positions and velocities."""
+    """Return the fit with the stated noise, else with estimated deviations of positions and velocities."""
     rec = search.rec
     problem, best_match = _best_of(search, deviations(rec, velocities=True))
     if search.stated:
@@ -239,7 +239,7 @@ def _with_noise(search: _Search, independent: bool) -> tuple[Problem, MatchResul
 
 
 def _rescaled(problem: Problem, best: MatchResult, width: int) -> tuple[Problem, MatchResult]:
-    """Return the match with deviations of positions and velocities rescaled to its residuals."""
+    """Return the fit with noise deviations of positions and velocities rescaled to its residuals."""
     for _ in range(_ROUNDS):
         factors = _factors(problem, best, width)
         if np.abs(np.log(factors)).max() < _SETTLED:
@@ -250,7 +250,7 @@ def _rescaled(problem: Problem, best: MatchResult, width: int) -> tuple[Problem,
 
 
 def _factors(problem: Problem, best: MatchResult, width: int) -> FloatArray:
-    """Return the ratio of residuals to deviations, of positions and of velocities, by column."""
+    """Return the ratio of residuals to assumed noise deviations, of positions and velocities, by column."""
     parts = problem.parts
     factors, share = np.ones(parts[0].y.shape[1]), best.freedom / problem.size
     for block in (slice(0, width), slice(width, None)):
@@ -265,7 +265,7 @@ def _factors(problem: Problem, best: MatchResult, width: int) -> FloatArray:
 
 
 def _spread(problem: Problem, best: MatchResult, rec: Recording) -> FloatArray:
-    """Return the deviation of each number's constant error, within the bound left by the residuals.
+    """Return the standard deviation of each coordinate's constant error, within a bound left by the residuals.
 
     Errors of a number range over as much as its residuals; with a constant one all of them stay within the bound.
     """
@@ -288,7 +288,7 @@ def _spread(problem: Problem, best: MatchResult, rec: Recording) -> FloatArray:
 
 
 def _result(search: _Search, problem: Problem, best: MatchResult) -> Fit:
-    """Return the fit with its intervals; restart where a profile leads below the minimum."""
+    """Return the fitted law with confidence intervals; refit if a likelihood profile finds a better minimum."""
     from scipy.stats import t as student
 
     names, count = search.parameters.names, len(problem.first)

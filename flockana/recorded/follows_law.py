@@ -62,7 +62,7 @@ def following(rec: Recording, law: Any) -> Following:
 
 
 def _from_sample_to_sample(rec: Recording, law: Any) -> Following:
-    """Compare each sample with the law's predictions from the previous sample and from one law time before."""
+    """Compare each sample with predictions from the previous sample and from one time scale of the law earlier."""
     assert rec.p is not None
     _ensure_few_steps(rec, law)
     place, speed = (np.broadcast_to(x, rec.present.shape) for x in (rec.accuracy.place, rec.accuracy.speed))
@@ -196,7 +196,7 @@ def _over_windows(rec: Recording, law: Any) -> Following:
 
 
 def _extended_start(part: Window, matched_start: FloatArray, is_off: bool, law: Any) -> FloatArray:
-    """Return the start of a window, if it is off anew: one that matches the first two samples, then four, and so on.
+    """Return a window's initial state, refitted to its first 2, 4, 8, ... samples if the fit is off.
 
     At an end of the samples splines are worst: a start by them may be too far off to find the solution of all samples.
     """

@@ -26,7 +26,7 @@ _NO_OTHERS = {"thrust": 0.0, "brake": 0.0, "feedforward": False}
 
 @dataclass(frozen=True)
 class Contribution:
-    """Part of a law: its gain, name, value, and its acceleration for a gain of 1."""
+    """Part of a law: the name, symbol and stated value of its gain, and its acceleration for a gain of 1."""
 
     name: str
     symbol: str
@@ -79,12 +79,12 @@ def _acts(law: Any) -> Part:
 
 
 def over_samples(part: Part, t: FloatArray, q: FloatArray, p: FloatArray) -> FloatArray:
-    """Return the acceleration of a part at each sample, shape (T, n, m)."""
+    """Return the acceleration by a part of a law at each recorded sample, shape (T, n, m)."""
     return np.array([part(float(t[k]), q[k], p[k]) for k in range(len(t))]).reshape(q.shape)
 
 
 def over_steps(part: Part, t: FloatArray, q: FloatArray, p: FloatArray) -> FloatArray:
-    """Return the mean acceleration of a part from each sample to the next by Simpson's rule, shape (T - 1, n, m)."""
+    """Return the mean acceleration by a part of a law between samples by Simpson's rule, shape (T - 1, n, m)."""
     h = np.diff(t)[:, None, None]
     middle_q = 0.5 * (q[:-1] + q[1:]) + h / 8.0 * (p[:-1] - p[1:])  # cubic through both ends
     middle_velocities = 1.5 / h * (q[1:] - q[:-1]) - 0.25 * (p[:-1] + p[1:])
@@ -136,7 +136,7 @@ def _of_pairs(alpha: AlphaInteraction) -> list[Variant]:
 
 
 def _pair_sum(r: float, force: Callable[[FloatArray, FloatArray, FloatArray], FloatArray]) -> Part:
-    """Return the sum over pairs within r of a force that is odd in the pair."""
+    """Return the acceleration function that sums pair forces, opposite on both agents, within distance r."""
 
     def acts(t: float, q: FloatArray, p: FloatArray) -> FloatArray:
         i, j = np.asarray(links(q, r)).T

@@ -40,7 +40,7 @@ class FreeParameters:
 
     @property
     def values(self) -> FloatArray:
-        """Return the parameter values of the law."""
+        """Values of the free parameters in the law, as an array."""
         value_list = []
         for name, path in zip(self.names, self.paths, strict=True):
             value = law_parameter(self.law, path)

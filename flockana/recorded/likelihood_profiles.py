@@ -17,7 +17,7 @@ _LOWER = 0.5  # squared deviations by which a profile may fall below the minimum
 
 
 class LowerMinimumError(Exception):
-    """Exception of a profile that led to a better fit, held in `result` with the fixed value."""
+    """Raised when a likelihood profile finds a better fit; holds its parameter values and window starts."""
 
     def __init__(self, result: MatchResult, k: int, value: float) -> None:
         self.values = np.insert(result.values, k, value)
@@ -66,7 +66,7 @@ def _end(problem: Problem, best: MatchResult, k: int, side: float, level: float,
 
 
 class _Trial:
-    """Fit with a fixed parameter: its start, and the rise of the squares."""
+    """Fit with one parameter fixed: its parameter values and window starts, and the rise of squared residuals."""
 
     def __init__(self, rise: float, values: FloatArray, starts: list[FloatArray], result: MatchResult | None = None):
         self.rise, self.values, self.starts = rise, values, starts

@@ -15,13 +15,13 @@ from flockana.recorded.recording import Recording
 
 @dataclass(frozen=True, eq=False)
 class MapSteps:
-    """Law view of a map: the acceleration at a sample is the mean over its steps to the next sample."""
+    """Stand-in law for a map: the acceleration at a sample is the mean over the map's steps to the next sample."""
 
     title: str
     accelerations: Mapping[float, FloatArray]  # by the time of the sample
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, None]:
-        """Return the mean acceleration from the sample at a time, with NaN for the energy rate."""
+        """Return the mean acceleration from the sample at a time, with None for the energy rate."""
         return self.accelerations[t], None
 
 
@@ -49,7 +49,7 @@ def map_steps(rec: Recording, law: Any) -> tuple[Accelerations, MapSteps, FloatA
 
 
 def noisy_map_twins(rec: Recording, law: Any, steps: MapSteps) -> list[tuple[Accelerations, MapSteps]]:
-    """Return what a flock under the map itself would show with the stated errors, in a few draws, led on from there."""
+    """Return (accelerations, map steps) for a few draws of the stated errors, as if the flock obeyed the map."""
     assert rec.p is not None  # as every recording that a map is compared with
     twins, h, exact = [], np.diff(rec.t)[:, None, None], np.array(list(steps.accelerations.values()))
     for place, speed in drawn_errors(rec):

@@ -37,7 +37,7 @@ class Window:
     m: int = 1
 
     def solution(self, law: Any, start: FloatArray, finer: int) -> FloatArray:
-        """Return the states of a law's solution from a start at the samples, positions and velocities, (K, 2 n m)."""
+        """Return the states of a law's solution from a start, at the times of the samples, (K, 2 n m)."""
         return self._solution(law, self.t, start, finer)
 
     def _solution(self, law: Any, times: FloatArray, start: FloatArray, finer: int) -> FloatArray:
@@ -51,7 +51,7 @@ class Window:
         return states
 
     def residual(self, law: Any, start: FloatArray, finer: int, shift: FloatArray | float = 0.0) -> FloatArray:
-        """Return the residuals of a law's solution over their deviations, shape (K w,); 0 in gaps.
+        """Return the residuals of a law's solution divided by noise deviations, shape (K w,); 0 in gaps.
 
         `shift` (w,) is a constant error of the samples.
         """
@@ -60,7 +60,7 @@ class Window:
         return (self.root * deviation).ravel()
 
     def slopes(self, law: Any, nearby: list[Neighbour], start: FloatArray, finer: int, block: float) -> FloatArray:
-        """Return the slopes of the law's solution by start and parameters, over deviations, (K w, 2 n m + P)."""
+        """Return the derivatives of the law's solution by start and parameters, divided by noise deviations."""
         longest = np.inf if law.scales is None else block * law.scales.time
         parts = [max(1, min(ceil(h / longest), 64)) for h in np.diff(self.t).tolist()]
         times, boundaries = self.t[:1], np.concatenate([[0], np.cumsum(parts)]).astype(int)
@@ -88,7 +88,7 @@ class Window:
 def _propagator(
     law: Any, nearby: list[Neighbour], t: float, q: FloatArray, p: FloatArray
 ) -> Callable[[FloatArray, float], FloatArray]:
-    """Return the function that propagates slopes over a step, to third order, by the law's linearisation."""
+    """Return the function that propagates derivatives by start and parameters over a step, by linearisation."""
     size = q.size
     by_q, by_p = _derivatives(law, t, q, p)
     forced = np.zeros((size, 2 * size + len(nearby)))
@@ -116,12 +116,12 @@ def _within(t: FloatArray, time: float) -> int:
 
 
 def usual_window(rec: Recording, law: Any) -> float:
-    """Return the usual window duration: several law times and many samples."""
+    """Return the usual duration of a window: several time scales of the law, at least some sample intervals."""
     return max(0.0 if law.scales is None else _TIMES * law.scales.time, _FEWEST * rec.interval)
 
 
 def deviations(rec: Recording, *, velocities: bool) -> FloatArray:
-    """Return the standard deviation of each number, (T, w): stated, from a bound, or estimated."""
+    """Return the standard deviation of each recorded coordinate, (T, w): stated, from a bound, or estimated."""
     place = rec.sd if rec.sd is not None else motions(rec).noise if rec.bound is None else rec.bound / np.sqrt(3.0)
     each = [np.broadcast_to(np.asarray(place, dtype=np.float64), rec.present.shape)]
     if velocities and rec.p is not None:
@@ -156,7 +156,7 @@ def windows(rec: Recording, duration: float, sd: FloatArray | None = None) -> li
 
 
 def _guess(rec: Recording, q: FloatArray, p: FloatArray) -> FloatArray:
-    """Return initial states, (T, 2 n m): smoothed or recorded ones, straight lines elsewhere."""
+    """Return guessed states at all samples, (T, 2 n m): smoothed or recorded, linearly interpolated elsewhere."""
     total, n, m = rec.q.shape
     q = np.where(np.isnan(q), rec.q, q).reshape(total, n * m)
     p = (p if rec.p is None else np.where(np.isnan(rec.p), p, rec.p)).reshape(total, n * m)

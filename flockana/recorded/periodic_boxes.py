@@ -72,7 +72,7 @@ def _mean_velocity(p: FloatArray) -> FloatArray:
 def _ensure_short(
     rec: Recording, i: int, short: FloatArray, ahead: FloatArray, h: FloatArray, size: FloatArray
 ) -> None:
-    """Raise if a step of an agent may be longer than half a period."""
+    """Raise if an agent may move more than half a period of the box between two samples."""
     median_step = float(np.median(h)) if len(h) else 1.0
     rate = np.abs(short) / h
     is_dense = h[:, 0] <= 1.5 * median_step

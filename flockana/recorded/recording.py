@@ -162,7 +162,7 @@ class Recording(ResultCache):
 
     @cached_property
     def accuracy(self) -> Accuracy:
-        """Half widths of positions and velocities, and their origin."""
+        """Error bounds (half widths) of recorded positions and velocities, and whether stated or estimated."""
         if self.bound is None and self.sd is None:
             return Accuracy(np.inf, np.inf, "unknown")
         kind: Kind = "estimated" if self.estimated or self.smoothed else "sd" if self.bound is None else "bound"
@@ -175,7 +175,7 @@ class Recording(ResultCache):
         return Accuracy(position_error, position_error / self.interval if speed is None else speed, kind)
 
     def window(self, start: float, end: float) -> Self:
-        """Return the samples between two times.
+        """Return the recording restricted to the samples between two times.
 
         Parameters
         ----------
@@ -190,7 +190,7 @@ class Recording(ResultCache):
         return self.select(samples=(self.t >= start) & (self.t <= end))
 
     def select(self, *, samples: Any = slice(None), agents: Any = None) -> Self:
-        """Return some samples of some agents.
+        """Return the recording restricted to some samples of some agents.
 
         Parameters
         ----------
@@ -212,7 +212,7 @@ class Recording(ResultCache):
         return replace(self, **change)
 
     def complete(self) -> Self:
-        """Return the window, and the agents seen throughout it, with the most positions; without gaps."""
+        """Return the gap-free part with most positions: a window, and the agents seen throughout it."""
         samples, agents = largest_complete_part(self.present)
         return self.select(samples=samples, agents=agents)
 
@@ -286,7 +286,7 @@ class Recording(ResultCache):
         return measured(self, d, r)
 
     def trajectory(self, law: Any = None, *, d: float | None = None, r: float | None = None) -> Trajectory:
-        """Return the samples as a `Trajectory`, for plots, films and the player; it is never judged.
+        """Return the samples as a `Trajectory` for plots, films and the player, not for verdicts.
 
         Parameters
         ----------

@@ -123,7 +123,7 @@ def read_recording(
 
 
 class _How(NamedTuple):
-    """Options of a user for reading a source."""
+    """The user's options for reading a recording, such as columns, time step and axes."""
 
     columns: Columns
     dt: float | None

@@ -24,7 +24,7 @@ Twin = tuple[Accelerations, Any]  # of a flock under the law with the stated err
 
 
 class Share(NamedTuple):
-    """Contribution of a part of the law: its gain in the law and in the recording, and its share of the motion."""
+    """Contribution of a part of the law: its stated and fitted gain, and its share of recorded accelerations."""
 
     symbol: str
     text: str
@@ -44,7 +44,7 @@ class Solution(NamedTuple):
 
 
 class Explained(NamedTuple):
-    """Accelerations explained by a law: residual, remaining squares, shares, findings."""
+    """Accelerations explained by a law: residuals, residual and total squares, shares of terms, findings."""
 
     residual: FloatArray
     left: float
@@ -55,7 +55,7 @@ class Explained(NamedTuple):
 
 
 class Regression:
-    """Accelerations to be explained by the parts of a law, weighted by accuracy."""
+    """Weighted least-squares regression of recorded accelerations on the accelerations by the parts of a law."""
 
     def __init__(self, data: Accelerations, law: Any) -> None:
         self.data, self.weights = data, data.weights
@@ -64,15 +64,15 @@ class Regression:
         self.total = self.squares(data.u)
 
     def squares(self, x: FloatArray) -> float:
-        """Return the weighted sum of squares."""
+        """Return Σ w ‖x‖², the sum of squared vector norms weighted by the accuracy of the accelerations."""
         return float(np.sum(self.weights * lengths(x) ** 2))
 
     def share(self, part: FloatArray) -> float:
-        """Return the share of the recorded accelerations along a part."""
+        """Return Σ w x·u/Σ w ‖u‖² for recorded accelerations u and the accelerations x by a part of the law."""
         return float(np.sum(self.weights[:, :, None] * part * self.data.u)) / self.total if self.total else 0.0
 
     def solve(self, columns: list[FloatArray]) -> Solution:
-        """Return the gains of some parts; residuals of one agent are treated as correlated."""
+        """Return least-squares gains of parts of the law; residuals of one agent count as correlated."""
         root = np.sqrt(self.weights)[:, :, None]
         matrix = np.stack([(root * column).ravel() for column in columns], axis=1)
         y, norms = root * self.target, np.linalg.norm(matrix, axis=0)
@@ -125,7 +125,7 @@ def explained(data: Accelerations, law: Any, twins: Sequence[Twin] = ()) -> Expl
 
 
 def _done_by_errors(twins: Sequence[Twin], parts: Sequence[Contribution]) -> tuple[FloatArray, float]:
-    """Return the largest change of each gain, and of the unexplained share, that errors alone make in the twins."""
+    """Return the largest changes of gains and of the unexplained share by errors alone, in simulated data."""
     gain_changes, lost_share = np.zeros(len(parts)), 0.0
     for data, law in twins:
         regression = Regression(data, law)

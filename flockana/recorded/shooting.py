@@ -34,7 +34,7 @@ _STEEPEST = 1e100  # slope of a residual, whose squares would soon overflow
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Windows to be matched by a law with unknown parameters, and constant sample errors with their spreads."""
+    """Problem of fitting a law's unknown parameters, and constant sample errors, to windows of samples."""
 
     parts: list[Window]
     with_values: Callable[[FloatArray], Any]
@@ -43,11 +43,11 @@ class Problem:
 
     @property
     def size(self) -> int:
-        """Total count of numbers in all samples."""
+        """Number of recorded position and velocity components in all windows, without gaps."""
         return sum(int(np.count_nonzero(segment.root)) for segment in self.parts)
 
     def fixed(self, k: int, value: float) -> Self:
-        """Return the problem with one parameter fixed, and the others free."""
+        """Return the fitting problem with one parameter fixed at a value, and the others free."""
 
         def law(z: FloatArray) -> Any:
             return self.with_values(np.insert(z, k, value))
@@ -55,7 +55,7 @@ class Problem:
         return replace(self, with_values=law, first=np.delete(self.first, k))
 
     def split(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the parameters of the law, and the constant errors of all numbers, (w,)."""
+        """Return the law's parameters and the constant errors of all coordinates, (w,), from the unknowns z."""
         count = len(self.first)
         if self.spread is None:
             return z, np.zeros(self.parts[0].y.shape[1])
@@ -76,7 +76,7 @@ class Problem:
         return misfits if all(np.isfinite(misfit).all() for misfit in misfits) else None
 
     def slopes(self, z: FloatArray, starts: Sequence[FloatArray], finer: int, block: float) -> list[FloatArray]:
-        """Return the slopes of each window by its start, the parameters and the constant errors."""
+        """Return slopes of each window's solution, over deviations, by start, parameters and constant errors."""
         theta, _ = self.split(z)
         law, nearby = self.with_values(theta), neighbouring_laws(self.with_values, theta)
         with np.errstate(over="ignore", invalid="ignore"):
@@ -97,7 +97,7 @@ class Problem:
 
 
 class MatchResult(NamedTuple):
-    """Result of matching: parameters, covariance for unit noise, starts, residuals, their number, and outcome."""
+    """Result of a fit: parameters, covariance for unit noise, window starts, residuals, and degrees of freedom."""
 
     values: FloatArray  # of the law, then constant errors
     covariance: FloatArray
@@ -111,18 +111,18 @@ class MatchResult(NamedTuple):
 
     @property
     def squares(self) -> float:
-        """Return the sum of the squared residuals."""
+        """Sum of the squared residuals of the fit."""
         return _squares(self.residuals)
 
     @property
     def variance(self) -> float:
-        """Variance of the residuals; 1 for noise of the stated deviation."""
+        """Variance of the fit's residuals, in units of the assumed noise variance."""
         return self.squares / self.freedom
 
 
 @dataclass(frozen=True, eq=False)
 class NormalEquations:
-    """Normal equations of starts and parameters, with the starts eliminated window by window."""
+    """Least-squares normal equations of window starts and parameters, with the starts eliminated."""
 
     slopes: list[FloatArray]
     corners: list[FloatArray]  # inverse of each start's own block
@@ -132,7 +132,7 @@ class NormalEquations:
 
     @classmethod
     def of(cls, slopes: list[FloatArray], count: int, damping: float) -> Self:
-        """Return the normal equations of given slopes, the last `count` of which belong to parameters."""
+        """Return the normal equations from derivatives, the last `count` columns of which are by parameters."""
         reduced_matrix, corners, cross_blocks = np.zeros((count, count)), [], []
         for slope in slopes:
             gram_matrix = slope.T @ slope
@@ -145,16 +145,16 @@ class NormalEquations:
 
     @property
     def covariance(self) -> FloatArray:
-        """Covariance of the parameters for noise of deviation 1."""
+        """Covariance of the fitted parameters for noise of standard deviation 1."""
         return inverse(self.reduced)
 
     def without(self, k: int) -> Self:
-        """Return the equations with one parameter fixed."""
+        """Return the normal equations with one parameter fixed."""
         count = len(self.reduced)
         return self.of([np.delete(x, x.shape[1] - count + k, axis=1) for x in self.slopes], count - 1, self.damping)
 
     def step(self, residuals: list[FloatArray]) -> tuple[FloatArray, list[FloatArray], float]:
-        """Return the step of the parameters and of each start, and the predicted decrease of the squares."""
+        """Return the steps of parameters and of each start, and the predicted decrease of squared residuals."""
         count, starts, gain_sum = len(self.reduced), [], 0.0
         gradients = [slope.T @ residual for slope, residual in zip(self.slopes, residuals, strict=True)]
         parts = [(x[: x.size - count], x[x.size - count :]) for x in gradients]
@@ -248,7 +248,7 @@ def _first(problem: Problem, values: FloatArray | None) -> FloatArray:
 
 
 def _with_prior(problem: Problem, starts: list[FloatArray]) -> list[FloatArray]:
-    """Return the window starts, extended by a prior of constant errors."""
+    """Return the window starts, with an empty one for the prior of constant errors if there are any."""
     count = len(problem.parts)
     return starts[:count] + ([] if problem.spread is None else [np.empty(0)])
 
@@ -271,7 +271,7 @@ def _normal(
 
 
 def reference_sizes(theta: FloatArray, first: FloatArray) -> FloatArray:
-    """Return what parameters are compared with: their size, or their first size where they are pressed to 0."""
+    """Return the reference sizes of parameters: |θ|, or the first value where θ is near 0."""
     sizes = np.abs(theta)
     is_pressed = (first > 0.0) & (theta[: len(first)] <= 2.0 * _LEAST * first)
     sizes[: len(first)][is_pressed] = first[is_pressed]

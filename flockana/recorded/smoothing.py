@@ -40,7 +40,7 @@ class Smoothed(NamedTuple):
 def smoothed(
     t: FloatArray, y: FloatArray, noise: FloatArray | None, pieces: _Pieces, *, groups: int = 1, floor: float = 0.0
 ) -> Smoothed:
-    """Return the smoothing spline through each piece of each series, with local jerk intensities.
+    """Return the smoothing spline through each gap-free part of each time series, with local jerk intensities.
 
     `pieces` (T, K) numbers those of each series, -1 outside; an estimated noise is `floor` at least.
     """
@@ -69,7 +69,7 @@ def _usual_interval(t: FloatArray, y: FloatArray) -> float:
 
 
 def _differences(x: FloatArray, pieces: _Pieces, order: int) -> FloatArray:
-    """Return all differences of an order between samples within the pieces of the series."""
+    """Return all differences of a given order between successive samples without gaps in time series."""
     rows = []
     for k in range(x.shape[1]):
         known_rows = np.flatnonzero(~np.isnan(x[:, k]))
@@ -80,7 +80,7 @@ def _differences(x: FloatArray, pieces: _Pieces, order: int) -> FloatArray:
 
 
 def _steepest(x: FloatArray, pieces: _Pieces) -> float:
-    """Return the logarithm of third differences, an upper bound of the jerk with noise."""
+    """Return the logarithm of an upper bound of the jerk intensity, from third differences of the samples."""
     differences = _differences(x, pieces, 3)
     rms_value = float(np.sqrt(np.mean(differences**2))) if differences.size else 1.0
     return float(np.log(max(rms_value, 1e-14))) + 2.0
@@ -89,7 +89,7 @@ def _steepest(x: FloatArray, pieces: _Pieces) -> float:
 def _local_jerk(
     t: FloatArray, x: FloatArray, sd: FloatArray, pieces: _Pieces, groups: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the jerk intensity at each sample, (T, K), and the log-likelihood gain by piece, (P, n).
+    """Return the jerk intensity at each sample, (T, K), and the log-likelihood gain by gap-free part, (P, n).
 
     The first is by the likelihood of the samples nearby.
     """
@@ -116,7 +116,7 @@ def _local_jerk(
 
 
 def _straighten(t: FloatArray, x: FloatArray, sd: FloatArray, mean: FloatArray, within: Any, axes: slice) -> None:
-    """Replace an agent's piece by straight motion unless acceleration is likelier."""
+    """Replace an agent's motion between gaps by a straight one unless acceleration is clearly likelier."""
     is_inside = within[:, axes.start]
     seen = is_inside & ~np.isnan(x[:, axes.start])
     if seen.sum() < _FEWEST_STRAIGHT:

@@ -96,7 +96,7 @@ def grid_of(q: FloatArray) -> float:
 
 
 def pieces_of(rec: Samples) -> npt.NDArray[np.intp]:
-    """Return the number of the gap-free piece of each sample and agent, shape (T, n); -1 outside.
+    """Return the number of the gap-free part of each sample and agent, shape (T, n); -1 outside.
 
     A gap is an interval in which an agent has missed a sample, by its own usual interval.
     """
@@ -135,7 +135,7 @@ class _Ends(NamedTuple):
 
 
 def filled(rec: _Recording, most: float | None, longest: float | None) -> _Recording:
-    """See `Recording.filled`."""
+    """Return a recording with its gaps filled, with error bounds from a greatest acceleration."""
     if not rec.gaps or most is None:
         return rec
     most = ensure_positive("most_acceleration", most)
@@ -166,7 +166,7 @@ def filled(rec: _Recording, most: float | None, longest: float | None) -> _Recor
 def _bridge(
     s: FloatArray, duration: float, ends: _Ends, most: float
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return positions and velocities in a gap at shares s, each with an error bound over all motions.
+    """Return positions and velocities at fractions s of a gap, with error bounds over all allowed motions.
 
     The cubic through both ends, or the chord where velocities are not known or say less. A motion whose acceleration is
     ``most`` at most is off by ``most`` times the integral of the absolute value of Peano's kernel; errors of ends add.
@@ -196,7 +196,7 @@ def _bridge(
 
 
 def _kernel(s: FloatArray, duration: float, by_q: FloatArray, by_p: FloatArray, order: int) -> FloatArray:
-    """Return the integral of |Peano kernel| of an interpolation, or of its slope, at shares s of a gap."""
+    """Return the integral of |Peano kernel| of an interpolation, or of its slope, at fractions s of a gap."""
 
     def kernel(x: FloatArray | float) -> tuple[Any, Any]:
         after = -by_q * (1.0 - x) * duration - by_p

@@ -64,7 +64,7 @@ def _theorem_entries() -> list[dict[str, Any]]:
 
 
 def _first(references: Sequence[str]) -> str:
-    """Return the first source other than flockana itself."""
+    """Return the readable name of the first source that is not flockana itself."""
     from flockana.report.value_texts import source_name
 
     return next((source_name(key) for key in references if key != "flockana"), "flockana")
@@ -73,7 +73,7 @@ def _first(references: Sequence[str]) -> str:
 def select(
     entries: Iterable[dict[str, Any]], words: Sequence[str] = (), *, source: str = "", status: str = ""
 ) -> list[dict[str, Any]]:
-    """Return the entries that contain all words, of one source, with one expected status."""
+    """Return the catalogue entries that contain all given words, of one source, with one expected status."""
     every = list(entries)
     sources = sorted({entry["source"] for entry in every})
     if source and not any(source.casefold() in source_name.casefold() for source_name in sources):
@@ -88,7 +88,7 @@ def select(
 
 
 def short_list(entries: Sequence[dict[str, Any]]) -> str:
-    """Return one line per entry, grouped by source."""
+    """Return catalogue entries as text, one line per entry, grouped by source."""
     width, lines = max((len(entry["name"]) for entry in entries), default=0), []
     for source_name in dict.fromkeys(entry["source"] for entry in entries):
         entries_of_source = (entry for entry in entries if entry["source"] == source_name)

@@ -20,7 +20,7 @@ _DECADES = 6  # more of them are labelled at every other one
 
 @dataclass(frozen=True)
 class Curve:
-    """A curve of a chart."""
+    """Curve of a chart: values over the chart's times, with a label."""
 
     values: FloatArray  # shape (T,): over the chart's times; where they are not finite there is no curve
     label: str = ""  # what it is; empty if the chart's own words say it
@@ -28,7 +28,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Chart:
-    """Curves over the same times."""
+    """Time-series chart: curves over the same times, axis text, scale, and horizontal lines with names."""
 
     words: str  # what the axis upwards is
     t: FloatArray  # shape (T,): times
@@ -81,7 +81,7 @@ def panels(charts: Sequence[Chart]) -> str:
 
 
 def _kept(values: FloatArray) -> npt.NDArray[np.intp]:
-    """Return samples that represent a curve: first, least and greatest in each time interval."""
+    """Return indices of samples that represent a curve: both ends, least and greatest in each interval."""
     samples = len(values)
     if samples <= 2 * _SPANS:
         return np.arange(samples)

@@ -26,7 +26,7 @@ Row = namedtuple("Row", "name theorem promise status reason velocities positions
 
 @dataclass(frozen=True)
 class ComparisonSection:
-    """Rows and pictures of one start under many laws."""
+    """Report section that compares one start under many laws: a row for each law, and pictures."""
 
     rows: tuple[Row, ...]  # one for each law
     pictures: tuple[Picture, ...]  # paths side by side, and velocity diameters
@@ -35,7 +35,7 @@ class ComparisonSection:
 
 @cache
 def comparison_section(seed: int = 0) -> ComparisonSection:
-    """Run the start under every law and judge the run; takes seconds, once per process."""
+    """Return the section that runs and judges one start under every law; takes seconds, once per process."""
     outcomes = compare(seed=seed)
     return ComparisonSection(tuple(_row(outcome) for outcome in outcomes), _pictures(outcomes))
 
@@ -48,7 +48,7 @@ def _row(outcome: Outcome) -> Row:
 
 
 def _reason(verdict: Verdict) -> str:
-    """Return why a verdict is not verified: a refuted or open claim, or an unmet hypothesis."""
+    """Return why a theorem's verdict is not verified: a refuted or open claim, or an unmet hypothesis."""
     claims = [claim for claim in verdict.main_claims if claim.status == verdict.status]
     if verdict.status in ("refuted", "inconclusive"):
         return f"{', '.join(claim.name for claim in claims)}: {claims[0].detail}"

@@ -53,7 +53,7 @@ def verdict_table(pages: Iterable[Page], *, width: int = 80) -> Table:
 
 
 def _share(verdict: Verdict) -> str:
-    """Return the number of the author's claims that share the verdict's status."""
+    """Return as text how many of the author's claims have the verdict's status, such as 2 of 3."""
     claims = verdict.main_claims
     return f"{sum(claim.status == verdict.status for claim in claims)} of {len(claims)}" if claims else ""
 
@@ -101,7 +101,7 @@ def details(verdict: Verdict) -> Group:
 
 
 def summary(pages: Sequence[Page], seconds: float) -> str:
-    """Return the numbers of verdicts by status, of expected ones, and the time taken."""
+    """Return a line with the numbers of verdicts by status and of differences from the expected, and the time."""
     findings = [finding for page in pages for finding in page.findings]
     kinds = ((s, sum(f.verdict.status == s for f in findings)) for s in MARKS)
     counts = ", ".join(f"{count} {status}" for status, count in kinds if count)

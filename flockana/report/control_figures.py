@@ -23,7 +23,7 @@ _SIZES = (3, 7, 12, 19)
 
 @dataclass(frozen=True)
 class Download:
-    """A file within the page."""
+    """File embedded in the report page for download: name, description and data address."""
 
     name: str
     words: str  # what is in it

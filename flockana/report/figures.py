@@ -26,13 +26,13 @@ class Picture:
 
 
 def drawn(caption: str, size: tuple[float, float], draw: Callable[..., object], *given: Any, **options: Any) -> Picture:
-    """Return a picture by a plot function that draws on one set of axes."""
+    """Return a picture with a caption, drawn by a plot function on one set of axes."""
     return Picture(caption, svg(lambda figure: draw(*given, ax=figure.subplots(), **options), size))
 
 
 @cache
 def pictures_of_laws() -> dict[type, Callable[[Trajectory], tuple[Picture, ...]]]:
-    """Return the picture functions of the sources' `PICTURES` by law."""
+    """Return the functions that draw pictures of a run, by law, from the sources' `PICTURES`."""
     return {law: draw for module in source_modules("figures") for law, draw in module.PICTURES.items()}
 
 
@@ -95,7 +95,7 @@ def effort(run: Trajectory, levels: Sequence[tuple[float, str]] = ()) -> Chart:
 
 
 def spread(values: FloatArray) -> tuple[Curve, ...]:
-    """Return the curves of greatest, mean and least value over the agents."""
+    """Return three curves over time: greatest, mean and least value over the agents."""
     statistics = {"greatest": values.max(axis=1), "mean": values.mean(axis=1), "least": values.min(axis=1)}
     return tuple(Curve(series, name) for name, series in statistics.items())
 

@@ -18,7 +18,7 @@ _MOST = 500  # links of a still: a lattice of 150 has 400, and more of them are 
 
 
 def stills(run: Trajectory, times: Sequence[float]) -> str:
-    """Return the samples nearest to some times, side by side on one scale, as HTML."""
+    """Return snapshots of a run at the samples nearest to some times, side by side on one scale, as HTML."""
     samples = np.array([int(np.argmin(np.abs(run.t - time))) for time in times])
     around = world(run.law.continuous or run.law, run, samples)
     places = [_project(run.q[k]) for k in samples]
@@ -54,7 +54,7 @@ def stills(run: Trajectory, times: Sequence[float]) -> str:
 
 
 def still(run: Trajectory, time: float) -> str:
-    """Return the sample nearest to a time as one SVG, on a scale of its own."""
+    """Return a snapshot of a run at the sample nearest to a time as one SVG, on its own scale."""
     text, end = stills(run, [time]), "</svg>"
     return text[text.index("<svg ") : text.index(end) + len(end)]
 
@@ -76,7 +76,7 @@ def _dots(points: FloatArray, size: float) -> str:
 
 
 def _links(around: World, q: FloatArray, j: int, put: Any) -> str:
-    """Return links in three colours: shorter than desired, about as desired, longer."""
+    """Return links of the net as SVG in three colours: shorter than desired, about as desired, longer."""
     kinds: Any
     if around.edges:
         pairs: Any = around.edges[j if len(around.edges) > 1 else 0]
@@ -117,7 +117,7 @@ def _world(solids: Sequence[Obstacle], wires: Sequence[FloatArray], put: Any, sc
 
 
 def _walls(solids: Sequence[Obstacle], q: FloatArray, put: Any) -> str:
-    """Return a grid for each wall in space, about the foot of the run's centre."""
+    """Return SVG grid lines for each plane wall in space, about the projection of the run's centre onto it."""
     walls = [obstacle for obstacle in solids if isinstance(obstacle, Wall) and obstacle.dimension == 3]
     if not walls:
         return ""

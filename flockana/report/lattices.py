@@ -17,7 +17,7 @@ _TOPICS = ("os-5-terminal", "E3", "E4", "E5", "E6", "E11")
 
 
 class EndState(NamedTuple):
-    """Net of a run's last state."""
+    """Description of the net at the end of a run: lattice kind, links, crossings of links, and claim statuses."""
 
     scenario: str
     kind: str  # α-lattice, quasi-α-lattice or neither, with its strain
@@ -31,7 +31,7 @@ class EndState(NamedTuple):
 
 @dataclass(frozen=True)
 class LatticeSection:
-    """End states, spirals and pictures of lattices and equilibria, for the report."""
+    """Report section on lattices and equilibria: nets at the end of runs, hexagonal spirals, and pictures."""
 
     ends: tuple[EndState, ...]  # by scenario
     spirals: tuple[tuple[int, int, int], ...]  # n, links of the hexagonal spiral, Harborth's number

@@ -19,7 +19,7 @@ _TELLING = ("refuted", "verified", "inconclusive", "vacuous")
 
 
 class FrontFinding(NamedTuple):
-    """Finding for the first screen of the report."""
+    """Finding shown at the top of the report: text, status, link to the verdict, and a thumbnail of the flock."""
 
     text: str
     status: str
@@ -50,7 +50,7 @@ def opening_sentence(findings: Iterable[Finding]) -> str:
 
 
 def most_telling(pages: Iterable[object]) -> list[tuple[ScenarioPage, list[Finding]]]:
-    """Return scenarios with their findings: surprises first, then opening findings, then refuted claims."""
+    """Return scenarios with findings: unexpected verdicts first, then opening findings, then refuted claims."""
     shown_pairs = {(scenario, theorem) for scenario, theorem, _ in FINDINGS}
 
     def rank(page: ScenarioPage, finding: Finding) -> tuple[bool, bool, int]:

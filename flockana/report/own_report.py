@@ -116,7 +116,7 @@ def own_pages(
 
 
 def _by_subject(verdicts: Sequence[Verdict]) -> dict[str, tuple[Verdict, ...]]:
-    """Return verdicts by subject; a repeated theorem on a subject gets a page of its own."""
+    """Return verdicts grouped by subject; a repeated theorem on one subject begins a new group."""
     pages: dict[str, dict[str, Verdict]] = {}
     for verdict in verdicts:
         name = verdict.subject or "verdicts"

@@ -25,7 +25,7 @@ _FEW_SAMPLES, _ENOUGH = 20, 60  # below the first a player would show straight l
 
 @dataclass(frozen=True)
 class Finding:
-    """Verdict with its statement, source and expected status."""
+    """Verdict on a theorem with the theorem's statement, its source and the expected status."""
 
     verdict: Verdict
     title: str
@@ -42,14 +42,14 @@ class Finding:
         return not self.surprises if self.expected else None
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
+        """Return the finding as a dictionary of plain data for JSON."""
         outcome = {"as_expected": self.as_expected, "surprises": list(self.surprises)}
         return self.verdict.to_dict() | {"title": self.title, "expected": dict(self.expected)} | outcome
 
 
 @dataclass(frozen=True)
 class ScenarioPage:
-    """Page of a scenario, as plain data."""
+    """Data of a report page on one scenario: facts of the run, verdicts, pictures and player data."""
 
     name: str
     title: str
@@ -64,41 +64,41 @@ class ScenarioPage:
 
     @property
     def command(self) -> str:
-        """Return the command that repeats the run; empty outside the catalogue."""
+        """Shell command that repeats the scenario's run; empty for a run outside the catalogue."""
         return f"flockana verify {self.name}" if self.name in scenarios() else ""
 
     @property
     def subject(self) -> str:
-        """Subject of the verdicts, for ids in the page."""
+        """Name of the scenario, the subject of the page's verdicts, for ids in the report."""
         return self.name
 
     @property
     def surprises(self) -> tuple[str, ...]:
-        """Return one line per difference from the expectation, including an early end of the run."""
+        """One line per difference of the run from the expected verdicts, including an early end of the run."""
         surprises = tuple(text for finding in self.findings for text in finding.surprises)
         return (self.early_end, *surprises) if self.early_end else surprises
 
 
 @dataclass(frozen=True)
 class FixedPage:
-    """Page of a theorem or erratum without a run."""
+    """Data of a report page on a theorem or erratum that is checked without a run."""
 
     finding: Finding
     subject = "fixed"
 
     @property
     def name(self) -> str:
-        """The theorem's id."""
+        """Id of the page's theorem or erratum."""
         return self.finding.verdict.theorem
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """The single verdict."""
+        """The page's single verdict, in a tuple."""
         return (self.finding,)
 
     @property
     def surprises(self) -> tuple[str, ...]:
-        """Return one line per difference from the expectation."""
+        """One line per difference of the page's verdict from the expected one."""
         return self.finding.surprises
 
 
@@ -106,7 +106,7 @@ Page = ScenarioPage | FixedPage
 
 
 def fixed_page(verdict: Verdict) -> FixedPage:
-    """Return a theorem's or erratum's own verdict as plain data."""
+    """Return the page data of a theorem or erratum that is checked without a run, from its verdict."""
     item = theorem(verdict.theorem)
     return FixedPage(_finding(verdict, item, item.expected))
 
@@ -139,7 +139,7 @@ def scenario_page(
 
 
 def verdicts_page(name: str, verdicts: tuple[Verdict, ...]) -> ScenarioPage:
-    """Return verdicts of the user's own as plain data, without a run."""
+    """Return the page data of the user's own verdicts, without a run."""
     entries = catalogue()
     findings = (
         _finding(verdict, entries[verdict.theorem], {})
@@ -151,7 +151,7 @@ def verdicts_page(name: str, verdicts: tuple[Verdict, ...]) -> ScenarioPage:
 
 
 def _play(scenario: Scenario, run: Trajectory, verdicts: tuple[Verdict, ...]) -> str:
-    """Return the player's data of a run, with marked instants of source and claims."""
+    """Return a run as text for the player, with instants marked that its source shows or that decide claims."""
     marks, title, played_run = marks_of(run, verdicts, scenario.instants), f"{scenario.name}: {scenario.title}", run
     if 1 < len(run.t) < _FEW_SAMPLES and not run.law.is_map:
         from flockana.plots.animation import equal_times

@@ -73,7 +73,7 @@ def recording_page(
 
 
 def measure_rows(seen: xarray.Dataset) -> list[tuple[str, str, str]]:
-    """Return (measure, value at the start, at the end) with errors, as texts."""
+    """Return rows (measure, value at start, value at end) of a recording as texts, with errors."""
     rows = []
     for name in MEASURES:
         values, errors = seen[name].values, seen[f"{name}_error"].values
@@ -84,7 +84,7 @@ def measure_rows(seen: xarray.Dataset) -> list[tuple[str, str, str]]:
 
 
 def _image(draw: Any) -> str:
-    """Return a figure as the address of a PNG in the page."""
+    """Return a drawn figure as a PNG in a data address for an HTML page."""
     with plots.style():
         figure = Figure(figsize=(9.0, 5.2), dpi=110, layout="constrained")
         draw(figure)

@@ -68,7 +68,7 @@ def _covers_catalogue(folder: Path) -> bool:
 
 
 def _facts(folder: Path) -> dict[str, Any] | None:
-    """Return the facts stored with a report; None without one, damaged verdicts count as a full report."""
+    """Return the facts stored with a report in a folder, None without a report; damaged ones count as full."""
     if not (folder / HTML).exists() and not (folder / JSON).exists():
         return None
     facts = {"complete": True, "of": None}
@@ -142,7 +142,7 @@ def _run_facts(seed: int, seconds: float | None, complete: bool) -> dict[str, An
 
 
 def page_environment() -> Environment:
-    """Return the template environment of one page; it numbers the page's figures."""
+    """Return the template environment of one report page, which numbers the page's figures."""
     environment, counter = templates(), count(1)
 
     def figure(picture: Picture) -> Markup:

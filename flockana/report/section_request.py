@@ -1,4 +1,4 @@
-"""Sections of the report beside its verdicts."""
+"""Requests for report sections other than the verdicts: comparison of laws, and linearised stability."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ MANY_LAWS, LINEARISED = "one start under many laws", "linearised flocks"
 
 @dataclass(frozen=True)
 class Section:
-    """Section to be built: a name (`MANY_LAWS` or `LINEARISED`) and the seed of its start."""
+    """Request for a report section, by name (`MANY_LAWS` or `LINEARISED`) and seed of its random start."""
 
     name: str
     seed: int = 0

@@ -19,20 +19,20 @@ class Survey:
 
     @property
     def name(self) -> str:
-        """Return the name shown by progress."""
+        """Name of the survey shown in the progress display: scenario and seeds."""
         return f"{self.scenario}, seeds {self.seeds[0]} to {self.seeds[-1]}"
 
 
 @dataclass(frozen=True)
 class SurveyResult:
-    """The records of a survey's runs."""
+    """Survey of a scenario over seeds, with the record of each run."""
 
     survey: Survey  # which runs
     records: tuple[Record, ...]  # one of each seed
 
     @property
     def name(self) -> str:
-        """Return the name shown by progress."""
+        """Name of the survey shown in the progress display."""
         return self.survey.name
 
 

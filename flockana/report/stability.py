@@ -39,7 +39,7 @@ _FORMATS = {"mode": "", "n": "", "frequency": ".3f", "predicted": ".5f", "measur
 
 @dataclass(frozen=True)
 class LinearisedFlocks:
-    """Pictures of linearised flocks, independent of the verdicts."""
+    """Pictures and state-space files of linearised flocks for the report, independent of the verdicts."""
 
     poles: tuple[Picture, ...]  # poles and modes of a flock under each algorithm
     control: tuple[Picture, ...]  # step response, root locus and norms
@@ -52,7 +52,7 @@ NO_FLOCKS = LinearisedFlocks((), (), ())
 
 @dataclass(frozen=True)
 class StabilitySection:
-    """Poles, decay rates, linear range and delay margins, for the report."""
+    """Report section on linearised stability: poles, decay rates, linear range and delay margins."""
 
     flocks: LinearisedFlocks  # pictures and data of flocks under the algorithms
     rows: tuple[Row, ...]
@@ -76,7 +76,7 @@ def stability_section(pages: Iterable[Page], flocks: LinearisedFlocks = NO_FLOCK
 
 
 def linearised_flocks() -> LinearisedFlocks:
-    """Return the linearised flocks of the section, with drawings."""
+    """Return pictures and data of linearised flocks for the report's section on stability."""
     flocks = _flocks()
     files = {name: f"{name}.json".lower().replace(" ", "-") for name, _ in flocks}
     spaces = tuple(state_space(flock, files[name], f"19 agents, {name}") for name, flock in flocks)
@@ -103,7 +103,7 @@ def _rows(name: str, verdict: Verdict) -> list[Row]:
 
 
 def _flocks() -> list[tuple[str, Linearisation]]:
-    """Return a hexagon of 19 agents under both algorithms, linearised."""
+    """Return the linearisations of a hexagon of 19 agents at equilibrium under Algorithms 1 and 2, with names."""
     laws: dict[str, Any] = {"Algorithm 1": Algorithm1(), "Algorithm 2": Algorithm2(target=StaticTarget((0.0, 0.0)))}
     patch = hexagonal_patch(2, 7.0)
     return [(name, linearise(law, find_equilibrium(law, patch))) for name, law in laws.items()]
@@ -149,7 +149,7 @@ def _range(verdicts: Sequence[Verdict]) -> Picture | None:
 
 
 def _steps(verdicts: Sequence[Verdict]) -> Picture | None:
-    """Draw the sources' steps relative to the largest stable steps."""
+    """Draw the ratios of the largest stable time steps to the sources' time steps; None without verdicts."""
     claims = [c for v in verdicts if v.theorem == "sampling-margins" for c in v.claims if c.computed]
     if not claims:
         return None

@@ -25,7 +25,7 @@ TEMPLATE = "report/statistics.html.j2"  # takes `statistics`, the section
 
 @dataclass(frozen=True)
 class Share:
-    """Share of runs in which a claim had one outcome."""
+    """Share of runs in which a claim had one outcome, with counts and confidence interval."""
 
     count: int  # count, runs: Runs that did, and all that the claim was checked on
     runs: int
@@ -34,11 +34,11 @@ class Share:
 
     @property
     def share(self) -> float:
-        """Return the share of the runs; NaN without any."""
+        """Number of runs with the outcome over the number of all checked runs; NaN without any."""
         return self.count / self.runs if self.runs else nan
 
     def __str__(self) -> str:
-        """Return share and interval in per cent."""
+        """Return the share of runs and its confidence interval in per cent."""
         if not self.runs:
             return "—"
         return f"{100.0 * self.share:.1f} % [{100.0 * self.low:.1f}, {100.0 * self.high:.1f}]"
@@ -46,7 +46,7 @@ class Share:
 
 @dataclass(frozen=True)
 class Row:
-    """Shares of one claim over all seeds."""
+    """Shares of runs over all seeds in which one claim is verified or refuted, and counts of other outcomes."""
 
     theorem: str
     claim: str
@@ -60,7 +60,7 @@ class Row:
 
 @dataclass(frozen=True)
 class ScenarioShares:
-    """Shares of one scenario's claims over all seeds."""
+    """Shares of runs over all seeds in which the claims of one scenario are verified or refuted."""
 
     scenario: str
     title: str
@@ -74,19 +74,19 @@ class ScenarioShares:
 
 @dataclass(frozen=True)
 class StatisticsSection:
-    """Shares over many seeds of the scenarios that were surveyed."""
+    """Report section on many seeds: shares of runs in which the claims of surveyed scenarios hold."""
 
     level: float  # confidence of every interval by itself
     entries: tuple[ScenarioShares, ...]  # by scenario
     picture: Picture | None = None  # all shares
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
+        """Return the report section as a dictionary of plain data for JSON."""
         return {"level": self.level, "scenarios": [asdict(entry) for entry in self.entries]}
 
 
 def gather(asked: Sequence[Survey], made: Iterable[SurveyResult], *, figures: bool = True) -> StatisticsSection | None:
-    """Return the section on scenarios with complete surveys, or None."""
+    """Return the report section on scenarios with complete surveys over seeds; None without any."""
     records = {result.survey: result.records for result in made}
     entries = []
     for name in dict.fromkeys(survey.scenario for survey in asked):

@@ -48,7 +48,7 @@ def svg(draw: Callable[[Any], object], size: tuple[float, float]) -> str:
 
 
 def placed(draw: Callable[[Any], object], size: tuple[float, float], dpi: float) -> Any:
-    """Return the canvas of a figure whose axes leave room for their texts."""
+    """Return the canvas of a drawn figure, laid out so that texts beside the axes fit in."""
     from matplotlib import rcParams
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -95,6 +95,6 @@ def _short(path: str) -> str:
 
 
 def named(source: str, caption: str, number: int) -> str:
-    """Return a figure with ids unique in the page and an accessible label."""
+    """Return a figure's SVG with ids unique in the page and an accessible label."""
     label = escape(caption, quote=True)
     return source.replace(IDS, f"f{number}-").replace('class="drawn"', f'class="drawn" role="img" aria-label="{label}"')

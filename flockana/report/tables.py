@@ -68,17 +68,17 @@ def _text(console: Console, cell: RenderableType) -> Text:
 
 
 def _indent(text: Text) -> int:
-    """Return the indentation of a text."""
+    """Return the number of leading blanks of a text."""
     return len(text.plain) - len(text.plain.lstrip(" "))
 
 
 def _hanging_indent(text: Text) -> int:
-    """Return the indentation of a text's further lines."""
+    """Return the number of blanks before each continuation line of a wrapped text."""
     return _indent(text) + 2 if _indent(text) else 0
 
 
 def _longest_piece(text: Text) -> int:
-    """Return the width of the longest part of a word between hyphens."""
+    """Return the width of the longest unbreakable piece of a text, with the hanging indentation."""
     return max((len(piece) + _hanging_indent(text) for piece in _PIECE.findall(text.plain)), default=0)
 
 
@@ -103,7 +103,7 @@ def headed_table(*columns: Column | str, **options: Any) -> Table:
 
 
 def column(heading: str, *, right: bool = False, width: int | None = None, wraps: bool = False) -> Column:
-    """Return a column that does not wrap by default, with an optional width for narrow terminals."""
+    """Return a table column that does not wrap by default, with an optional least width."""
     justify: Literal["left", "right"] = "right" if right else "left"
     return Column(heading, justify=justify, no_wrap=not wraps, min_width=width, overflow="fold")
 

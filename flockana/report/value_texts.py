@@ -80,7 +80,7 @@ def _describe(value: Any, law: Any) -> str:
 
 
 def tolerance_rows(tolerances: Tolerances) -> tuple[tuple[str, str, str], ...]:
-    """Return (name, value, meaning) of every threshold."""
+    """Return (name, value, meaning) of every numeric threshold of the verdicts."""
     meanings = dict(re.findall(r"^(\w+) : float\n((?:[ ]{4}.+\n?)+)", getdoc(Tolerances) or "", re.MULTILINE))
     names = [f.name for f in fields(tolerances)]
     return tuple((n, show(getattr(tolerances, n)), " ".join(meanings.get(n, "").split())) for n in names)

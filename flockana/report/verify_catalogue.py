@@ -26,7 +26,7 @@ ERRATA = "errata"
 
 @dataclass(frozen=True)
 class Task:
-    """Scenario or theorem to verify, as names and numbers that can be sent to a process."""
+    """Scenario or theorem to verify, as plain names and numbers that can be sent to another process."""
 
     name: str  # of the scenario or the theorem
     fixed: bool = False  # true for a theorem by itself
@@ -41,7 +41,7 @@ Done: TypeAlias = "Page | SurveyResult | ComparisonSection | LinearisedFlocks"
 
 
 def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tuple[Task, ...]:
-    """Return the tasks for a name: scenarios in catalogue order, then theorems without a run."""
+    """Return the verification tasks for a name: scenarios in catalogue order, then theorems without a run."""
     if name in scenarios():
         return (Task(name, seed=seed, figures=figures),)
     if name is None:
@@ -67,7 +67,7 @@ def plan(name: str | None = None, *, seed: int = 0, figures: bool = True) -> tup
 
 
 def check(task: Work) -> Done:
-    """Run and verify one task in this process; an error names the task."""
+    """Run and verify one task of the report in this process; an error names the task."""
     try:
         with restore_interrupts():
             if isinstance(task, Survey):
@@ -109,7 +109,7 @@ def check_all(
 
 
 def _execution_order(tasks: Sequence[Work]) -> list[Work]:
-    """Return tasks in the order of execution: one flow first, then maps, then the others."""
+    """Return the report's tasks in the order of execution: one flow first, then maps, then the others."""
     # Two workers that compile for the first time then compile different kernels, the one an integrator with its checks,
     # the other the loops of maps, and seldom wait for each other (`flockana.jit`).
     subjects = {_subject(task) for task in tasks}.intersection(scenarios())

@@ -69,7 +69,7 @@ class Flock(NotEvidence, WithStart):
         return callable(self.q0) or callable(self.p0)
 
     def start(self, seed: int = 0) -> tuple[Any, Any]:
-        """Return positions and velocities, each of shape (n, m)."""
+        """Return the flock's initial positions and velocities, each of shape (n, m)."""
         law, t0 = self.law, self.t_span[0]
         return draw_start(self.q0, self.p0, ensure_seed(seed), lambda q: start_velocities(law, t0, q, None))
 
@@ -94,7 +94,7 @@ class Flock(NotEvidence, WithStart):
         return self.scenario(seed).run(progress=progress)
 
     def theorems(self, seed: int = 0) -> tuple[str, ...]:
-        """Return the ids of the theorems about this law."""
+        """Return the ids of the theorems about the flock's law."""
         return theorems_about(self.law, *self.start(seed), self.t_span[0])
 
     def verify(

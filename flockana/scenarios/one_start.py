@@ -33,7 +33,7 @@ _RTOL = 1e-10  # so that what the integration leaves of velocities that agree li
 
 @dataclass(frozen=True)
 class LawEntry:
-    """Law for the common start, with a theorem about it."""
+    """Law to be run from a common start, with a theorem about its runs and the expected status."""
 
     name: str  # of the law, for people
     law: Callable[[FloatArray, FloatArray], Law | DiscreteLaw]  # ``law(q0, p0)`` builds it
@@ -44,7 +44,7 @@ class LawEntry:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Outcome of the start under one law."""
+    """Outcome of the common start under one law: the run, and the verdict of the law's theorem."""
 
     entry: LawEntry  # the law and its theorem
     run: Trajectory
@@ -62,7 +62,7 @@ class Outcome:
 
     @property
     def groups(self) -> int:
-        """Return the number of net components within the common range at the end."""
+        """Number of groups at the end of the run: components of the net of links within a common range."""
         return int(components(self.run.n, links(self.run.q[-1], RANGE)).max()) + 1
 
     @property
@@ -80,13 +80,13 @@ def one_start(seed: int = 0) -> tuple[FloatArray, FloatArray]:
 
 
 def follower_of(q: FloatArray, p: FloatArray) -> LinearTarget:
-    """Return a γ-agent that starts at the flock's centre with its velocity."""
+    """Return a γ-agent that starts at the flock's centre of mass with the centre's velocity."""
     position, velocity = q.mean(axis=0).tolist(), p.mean(axis=0).tolist()
     return LinearTarget((position[0], position[1]), (velocity[0], velocity[1]))
 
 
 def net_of(q: FloatArray) -> tuple[tuple[int, int], ...]:
-    """Return the links within the common range at the start."""
+    """Return the links (i, j) of agents within a common range at the start."""
     return tuple((i, j) for i, j in links(q, RANGE).tolist())
 
 

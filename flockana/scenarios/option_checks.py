@@ -55,7 +55,7 @@ def ensure_judged(names: Iterable[str]) -> None:
 
 
 def ensure_options(name: str, build: Callable[..., Any], options: Mapping[str, Any]) -> None:
-    """Raise unless a scenario has these options, with values of the right kind."""
+    """Raise unless a scenario has the given options, with values of the types of their defaults."""
     defaults = {key: one.default for key, one in inspect.signature(build).parameters.items() if key != "seed"}
     unknown = sorted(set(options) - set(defaults))
     if unknown:

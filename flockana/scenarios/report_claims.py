@@ -28,7 +28,7 @@ PANEL = ("connectivity", "cohesion_radius", "normalised_deviation_energy", "norm
 
 
 def report(name: str, text: str) -> Callable[[Check], Report]:
-    """Return a decorator that turns a check of a run into a report with the report's name as claim."""
+    """Return a decorator that turns a function which judges a run into a named `Report` of a source."""
 
     def made(check: Check) -> Report:
         return Report(name, text, lambda run, tolerances: replace(check(run, tolerances), name=name))
@@ -37,7 +37,7 @@ def report(name: str, text: str) -> Callable[[Check], Report]:
 
 
 def finding(margin: float, detail: str, *, error: float | None = None, **fields: Any) -> Claim:
-    """Return the claim of a report, judged by its margin alone."""
+    """Return the claim of a source's report on a run, judged by its margin alone."""
     # A margin half-way between whole numbers is a count against a bound, and exact; any other is off by its rounding.
     if error is None:
         is_count = margin != 0.0 and float(2.0 * margin).is_integer()
@@ -53,7 +53,7 @@ def limit_report(certificate: Certificate, detail: str, *, stated: str = "", **f
 
 
 def in_source_units(scales: Callable[[], Scales], reports: Iterable[Report]) -> tuple[Report, ...]:
-    """Return reports judged in the units of their source."""
+    """Return a source's reports on runs, changed to judge each run in the units of the source."""
 
     def converted(check: Check) -> Check:
         def check_in_source_units(run: Trajectory, tolerances: Tolerances) -> Claim:

@@ -13,7 +13,7 @@ from flockana.theorems import Tolerances, Verdict, verify
 
 @dataclass(frozen=True)
 class Enclosure:
-    """Settings for rigorous verdicts on a run: a tube from its start over its time."""
+    """Settings for rigorous verdicts on a run: theorems, and a tube of solutions from its start over its time."""
 
     theorems: tuple[str, ...]  # ids of the theorems; others are checked on the run
     # whether to certify the basin of the equilibrium next to the end: what claims about limits need
@@ -26,7 +26,7 @@ class Enclosure:
         return verify(name, tube, basin=basin, tolerances=tolerances, subject=subject)
 
     def _enclosed(self, run: Trajectory) -> tuple[Any, Any]:
-        """Return the tube, and the basin or None, in lengths of ℓ (the unit of σ₁)."""
+        """Return the tube of solutions, and the basin of its end or None, in lengths of ℓ (the unit of σ₁)."""
         from flockana.certified.basin import certify
         from flockana.certified.enclose_run import enclose
         from flockana.certified.structural_potential import in_lengths_of_unit

@@ -26,14 +26,14 @@ OURS = ("olfati-saber-2006", "flockana")  # references of scenarios of our own a
 
 @dataclass(frozen=True)
 class Report:
-    """Source's statement about its run, with a function that judges it."""
+    """Statement of a source about its own simulation, with a function that judges a run by it."""
 
     name: str  # short name
     text: str  # what the source reports, in our words
     check: Callable[[Trajectory, Tolerances], Claim]  # ``check(trajectory, tolerances) -> Claim``
 
     def judge(self, seen: Observed, tolerances: Tolerances) -> Claim:
-        """Return the claim on a run, with an error from the difference to a second run."""
+        """Return the statement's claim on a run, with an error from the difference to a second run."""
         return by_both_runs(seen, lambda run: self.check(run, tolerances))
 
 
@@ -106,7 +106,7 @@ class Scenario(WithStart):
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Shape (n, m), known before the start is drawn."""
+        """Numbers of agents and of dimensions, (n, m), known before the start is drawn."""
         n, m = vars(self)["q0"].shape
         return n, m
 
@@ -142,7 +142,7 @@ class Scenario(WithStart):
         return verify(name, trajectory, tolerances=tolerances, subject=self.name)
 
     def reported(self, trajectory: Trajectory, *, tolerances: Tolerances | None = None) -> tuple[Verdict, ...]:
-        """Return the source's reports as one verdict; None if it reports nothing."""
+        """Return the source's reports as one verdict in a tuple; empty if the source reports nothing."""
         if not self.reports:
             return ()
         tolerances_used = Tolerances() if tolerances is None else tolerances
@@ -194,7 +194,7 @@ def catalogue() -> dict[str, Callable[..., Scenario]]:
 
 
 def scenarios() -> tuple[str, ...]:
-    """Return the names of the catalogue.
+    """Return the names of the scenarios in the catalogue.
 
     Examples
     --------

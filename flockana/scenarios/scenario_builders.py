@@ -24,7 +24,7 @@ def entry(
     reports: tuple[Report, ...] = (),
     **fields: Any,
 ) -> Builder:
-    """Return the builder of a scenario from time 0 whose start alone depends on the seed."""
+    """Return a function of a seed that builds a scenario from time 0; the start alone depends on the seed."""
 
     def build(seed: int = 0) -> Scenario:
         return Scenario(name, title, source, law, *draw(seed), (0.0, end), seed, expected, reports, **fields)
@@ -33,20 +33,20 @@ def entry(
 
 
 def verified(*ids: str) -> dict[str, Status]:
-    """Return the status `verified` for theorems and claims."""
+    """Return a mapping of theorem and claim ids to the expected status `verified`."""
     return dict.fromkeys(ids, "verified")
 
 
 def refuted(*ids: str) -> dict[str, Status]:
-    """Return the status `refuted` for theorems and claims."""
+    """Return a mapping of theorem and claim ids to the expected status `refuted`."""
     return dict.fromkeys(ids, "refuted")
 
 
 def vacuous(*ids: str) -> dict[str, Status]:
-    """Return the status `vacuous` for theorems and claims."""
+    """Return a mapping of theorem and claim ids to the expected status `vacuous`."""
     return dict.fromkeys(ids, "vacuous")
 
 
 def inconclusive(*ids: str) -> dict[str, Status]:
-    """Return the status `inconclusive` for theorems and claims."""
+    """Return a mapping of theorem and claim ids to the expected status `inconclusive`."""
     return dict.fromkeys(ids, "inconclusive")

@@ -90,7 +90,7 @@ class DOP853(AdaptivePair):
 
     @cached_property
     def tableau(self) -> Tableau:
-        """Return the tableau, with the published interpolant converted to powers of θ."""
+        """Coefficients of the Runge-Kutta method, with the published interpolant converted to powers of θ."""
         count = len(C)
         a, estimates = _dense_rows(A, count), _dense_rows((E5, E3), STAGES + 1)
         whole, first_row, last_row = a[STAGES], np.eye(count)[0], np.eye(count)[STAGES]
@@ -105,5 +105,5 @@ class DOP853(AdaptivePair):
 
 
 def _dense_rows(rows: Sequence[Mapping[int, float]], count: int) -> FloatArray:
-    """Return rows of `count` numbers from their nonzero entries."""
+    """Return a matrix whose rows of `count` numbers are given by their nonzero entries."""
     return np.array([[row.get(k, 0.0) for k in range(count)] for row in rows])

@@ -33,7 +33,7 @@ _WHOLE = 1e-9  # relative: how far from a whole number of steps a clock may be
 
 @dataclass(frozen=True)
 class _Stepwise(Solver):
-    """Typing base of solvers with a step, separate from `FixedStep.__new__`."""
+    """Base class of solvers with a fixed step, for typing; separate from `FixedStep.__new__`."""
 
     dt: float  # type: ignore[misc]  # of an instance here
 
@@ -72,7 +72,7 @@ class FixedStep(_Stepwise):
     order_of_wrapped: ClassVar[int] = 0  # by which files name it where it steps a wrapped law
 
     def __new__(cls, *given: Any, **named: Any) -> Any:
-        """Return the solver, or with a law the map of its steps."""
+        """Return the solver, or, if a law is given, the map that steps the law by the solver."""
         law, *settings = (named.pop("law"), *given) if "law" in named else given or (None,)
         stepped_law: Any = law
         if not isinstance(law, LawOfMotion):
@@ -81,7 +81,7 @@ class FixedStep(_Stepwise):
 
     @cached_property
     def tableau(self) -> Tableau:
-        """Coefficients for compiled steps."""
+        """Coefficients of the Runge-Kutta method, for compiled steps."""
         return tableau_of_steps(self.a, self.b, self.position_factor or 0.0)
 
     @property
@@ -164,7 +164,7 @@ class FixedSteps(DiscreteLaw):
 
     @property
     def spelling(self) -> tuple[Any, Mapping[str, Any]] | None:
-        """Return class and arguments for files: the solver's class, called with a law; None for a subclass."""
+        """Class and arguments that files store: the solver's class, called with a law; None for a subclass."""
         if type(self) is not FixedSteps:
             return None
         arguments = {"law": self.law, "dt": self.dt}
@@ -179,7 +179,7 @@ class FixedSteps(DiscreteLaw):
 
     @property
     def dt(self) -> float:  # type: ignore[override]  # the solver's
-        """Step, in time units."""
+        """Length of a time step, in time units."""
         return self.solver.dt
 
     @property
@@ -223,16 +223,16 @@ class FixedSteps(DiscreteLaw):
 
     @cached_property
     def _memory(self) -> float:
-        """Return the longest memory of the law; nested delays add up."""
+        """Longest time into the past from which the law uses states; nested delays add up."""
         return sum(wrapper.memory for wrapper in self._wrappers)
 
     @cached_property
     def past_steps(self) -> int:
-        """Number of stored past steps, including the present one."""
+        """Number of stored steps of a law with memory, the present one included; 0 without memory."""
         return 2 + ceil(self._memory / self.dt - _WHOLE) if self._memory > 0.0 else 0
 
     def start(self, q: FloatArray, p: FloatArray) -> Arrays:
-        """Return the memory at the start: a delayed law's history, else uniform motion."""
+        """Return the stored past at the start of a run: a delayed law's history, else uniform motion."""
         if not needs_steps(self.law):
             return {}
         rows = (self.past_steps, *q.shape)
@@ -265,7 +265,7 @@ class FixedSteps(DiscreteLaw):
         return visit_method(times, q, p, memory, wanted)
 
     def _made(self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray) -> States:
-        """Return (q, p, u, memory) after the requested steps: from the law's block, compiled code, or Python."""
+        """Return (q, p, u, memory) after the requested steps: by the law itself, compiled code, or Python."""
         if self._first_order:  # positions are stepped as velocities of other laws are, by the rate that these give
             rate, q, p, next_memory = self._interpreted(times, np.zeros_like(q), q, memory, wanted)
             return q, p, rate, next_memory
@@ -278,7 +278,7 @@ class FixedSteps(DiscreteLaw):
     def _compiled(
         self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray
     ) -> States | None:
-        """Return the steps from one compiled call; None without a compiled law or with too many pairs."""
+        """Return states after the requested steps from compiled code; None if not compiled or too many pairs."""
         (n, m), steps = q.shape, int(wanted[-1])
         if (form := self.law.compiled_push(m)) is None:
             return None
@@ -305,7 +305,7 @@ class FixedSteps(DiscreteLaw):
     def _interpreted(
         self, times: FloatArray, q: FloatArray, p: FloatArray, memory: Arrays, wanted: IndexArray
     ) -> States:
-        """Return the steps made one by one in Python."""
+        """Return the states after the requested steps, made one by one in Python."""
         shape, first_step = q.shape, int(memory["step"]) if memory else 0
         past = Past(deque([tuple(row) for row in memory["past"]] if memory else [], self.past_steps or 1), self.dt)
         held_inputs = {k: item for k, item in enumerate(memory["held"], 1) if np.isfinite(item).all()} if memory else {}

@@ -23,7 +23,7 @@ class Past:
     h: float
 
     def begin(self, u: FloatArray, *, first: bool) -> None:
-        """Store the input after the present state; the input jumps at the first step."""
+        """Store the input after the present state, and, except at the first step, also as that before."""
         q, p, arrival_input, _ = self.rows.pop()
         self.rows.append((q, p, arrival_input if first else u, u))
 

@@ -43,7 +43,7 @@ class Scipy(Solver):
 
     @property
     def one_step(self) -> bool:  # type: ignore[override]  # by kind
-        """Whether the next step depends on the present state alone."""
+        """Whether the method is a one-step method, whose next step depends on the present state alone."""
         return self.kind not in _WITH_A_PAST
 
     def open(self, rate: Rate, t: float, y: FloatArray, f: FloatArray, limits: Limits) -> Any:  # noqa: D102
@@ -59,7 +59,7 @@ class ScipyPair(AdaptivePair):
 
     @cached_property
     def tableau(self) -> Tableau:
-        """Coefficients for compiled steps."""
+        """Coefficients of the Runge-Kutta pair, for compiled steps."""
         scipy_class = self.scipy_class
         stages = scipy_class.n_stages
         a = np.zeros((stages + 1, stages + 1))

@@ -56,7 +56,7 @@ class Solver(ABC):
 
     @property
     def tableau(self) -> Tableau | None:
-        """Coefficients for compiled steps; None for solvers in Python only."""
+        """Coefficients of the method for compiled steps; None for solvers that run in Python only."""
         return None
 
     @abstractmethod
@@ -103,12 +103,12 @@ class AdaptivePair(Solver):
 
     @cached_property
     def tableau(self) -> Tableau:
-        """Coefficients for compiled steps."""
+        """Coefficients of the Runge-Kutta pair, for compiled steps."""
         return tableau_of_pair(self.a, self.b, self.error, self.error_order, self.interpolant)
 
     @property
     def scipy_class(self) -> Any:
-        """Class of scipy with the same steps in Python."""
+        """Solver class of scipy that makes the same steps as the pair, in Python."""
         import scipy.integrate
 
         if self.in_scipy:

@@ -18,7 +18,7 @@ class FixedStepper:
         self.status = "running"
 
     def step(self) -> None:
-        """Make one step."""
+        """Make one step of the method towards the end time."""
         t, y, left, stages, tableau = self.t, self.y, self.t_bound - self.t, self.tableau.stages, self.tableau
         h = left if left <= self.h_abs else self.h_abs
         rates = [self.f]

@@ -13,7 +13,7 @@ IndexArray = npt.NDArray[np.int64]
 
 
 class Tableau(NamedTuple):
-    """Coefficients (A, C, E, P) of a method, where rates are kept, stages of a step, exponent of the error, lead.
+    """Runge-Kutta coefficients A, C, E, P, with storage rows of rates, stages, error exponent, position factor.
 
     The exponent is 0 for a method of fixed steps. Stage s is kept in row `rows[s]`: a rate that nothing reads again
     gives its place to a later one, which at a million agents is a hundred megabytes. `lead` f adds f h² u to the
@@ -59,7 +59,7 @@ def tableau_of_steps(a: Sequence[Sequence[float]], b: Sequence[float], lead: flo
 
 
 def _square(a: Sequence[Sequence[float]], b: Sequence[float]) -> FloatArray:
-    """Return the weights of all stages and of the step as one square matrix."""
+    """Return the coefficients of a Runge-Kutta method as one square matrix, the weights b in its last row."""
     full_tableau = np.zeros((len(b) + 1, len(b) + 1))
     for s, row in enumerate([*a, b]):
         full_tableau[s, : len(row)] = row
@@ -67,12 +67,12 @@ def _square(a: Sequence[Sequence[float]], b: Sequence[float]) -> FloatArray:
 
 
 def _times(whole: FloatArray) -> FloatArray:
-    """Return the times of the stages as shares of the step, exactly 1 at its end."""
+    """Return the stage times of a Runge-Kutta method as fractions of the step, exactly 1 at its end."""
     return np.append(whole[:-1].sum(axis=1), 1.0)
 
 
 def _hermite(weights: FloatArray) -> FloatArray:
-    """Return the cubic from the states and rates at both ends of a step, in powers of θ."""
+    """Return coefficients in powers of θ of the cubic through states and rates at both ends of a step."""
     powers = np.outer(weights, (0.0, 3.0, -2.0))
     powers[0] += (1.0, -2.0, 1.0)
     powers[-1] += (0.0, -1.0, 1.0)

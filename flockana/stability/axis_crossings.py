@@ -33,7 +33,7 @@ _SAFE = 0.99  # of an interval that exact arithmetic would exclude
 
 
 class Crossing(NamedTuple):
-    """Delay and frequency of a root on the axis, and a delay below which there certainly is none."""
+    """Delay and frequency at which a root is on the imaginary axis, and a delay below which none is."""
 
     delay: float
     frequency: float
@@ -79,7 +79,7 @@ def _moduli_meet(a: ComplexArray, b: ComplexArray, size: float) -> list[float]:
 
 
 class _Diagonals(NamedTuple):
-    """Diagonals of four matrices, shape (4, N), and whether they are symmetric with common real modes."""
+    """Diagonals (4, N) of four jointly diagonalised or triangularised matrices, and whether symmetric."""
 
     values: Any
     real: bool
@@ -122,7 +122,7 @@ def phase(z: complex) -> float:
 
 
 class _Spectrum(NamedTuple):
-    """Eigenvalues μ of W at a frequency, dμ/dω, and bounds of W's change per |dω| and per |dω|².
+    """Eigenvalues μ of a matrix W(ω) (a real μ is an axis crossing), slopes dμ/dω, bounds of W's change.
 
     Row i of what is left at μ is at most √(μ² + size_i²) times the rows of `first` and `second`, whatever the sizes.
     """
@@ -134,7 +134,7 @@ class _Spectrum(NamedTuple):
     second: FloatArray
 
     def crossings(self, omega: float) -> tuple[FloatArray, FloatArray]:
-        """Return frequencies at which eigenvalues become real, to first order, and their delays."""
+        """Return frequencies at which eigenvalues of W become real, to first order, with the delays."""
         with np.errstate(divide="ignore", invalid="ignore"):
             move = -self.values.imag / self.slopes.imag
             moved_values = self.values.real + self.slopes.real * move
@@ -143,7 +143,7 @@ class _Spectrum(NamedTuple):
 
 
 def _spectrum(four: Four, omega: float) -> _Spectrum:
-    """Return the spectrum of W at a frequency, with its derivatives."""
+    """Return the eigenvalues of W at a frequency, with derivatives; a real one marks an axis crossing."""
     k0, d0, k1, d1 = four
     identity = np.eye(len(k0))
     inverse = np.linalg.inv(k0 + k1 - omega**2 * identity + 1j * omega * (d0 + d1))
@@ -159,7 +159,7 @@ def _spectrum(four: Four, omega: float) -> _Spectrum:
 
 
 def _distances(at: _Spectrum, lowest: float) -> FloatArray:
-    """Return the least |μ − μ_i|/√(μ² + size_i²) over all real μ >= `lowest`."""
+    """Return each eigenvalue's least |μ − μ_i|/√(μ² + size_i²) over all real μ >= `lowest`."""
     a, b, lower = at.values.real / at.sizes, at.values.imag / at.sizes, lowest / at.sizes
     total = 1.0 + a * a + b * b
     squared_value = 2.0 * b * b / (total + np.sqrt(np.maximum(total * total - 4.0 * b * b, 0.0)))
@@ -170,7 +170,7 @@ def _distances(at: _Spectrum, lowest: float) -> FloatArray:
 
 
 def _crossing_free(at: _Spectrum, angle: float) -> float:
-    """Return a frequency distance that is certainly free of crossings with ωτ up to an angle."""
+    """Return a frequency distance within which no root crosses the axis for phases ωτ up to `angle`."""
     # Row i of the perturbed matrix is dominated by its diagonal if Σ_j (|dω| first_ij + |dω|² second_ij) s_j is less
     # than s_i times the distance of μ_i, for one set of s > 0: the Perron vector, which makes the interval longest.
     gaps = _distances(at, 1.0 / tan(0.5 * angle) if angle < 2.0 * pi else -inf)
@@ -191,7 +191,7 @@ def least_crossing(
     advance: Callable[[float], object] = lambda _: None,
     best_crossing: Crossing = NO_CROSSING,
 ) -> Crossing:
-    """Return a bracket of the least crossing between frequencies `low` and `high`; low = 0 needs regular stiffness."""
+    """Return a bracket of the least delay with a root on the axis at a frequency from `low` to `high`."""
     # The delay is one at which a root is on the axis; `least`, below which none is, is 0 if too many spectra are
     # needed, or if the softest motion is so soft that rounding may hide its crossings. `advance` is called with the
     # share of the frequencies that is done. Later crossings than the best of elsewhere are not looked for.
@@ -223,7 +223,7 @@ def least_crossing(
 
 
 def _refined(four: Four, omega: float, at: _Spectrum, index: int, worst: float) -> tuple[Crossing, int]:
-    """Return a crossing by Newton's method on Im μ(ω) = 0 (infinite if none), and the number of spectra."""
+    """Return an axis crossing by Newton's method (infinite delay if none), and the number of spectra computed."""
     for step_number in range(_STEPS):
         value, slope = complex(at.values[index]), complex(at.slopes[index])
         frequency_step = -value.imag / slope.imag if slope.imag else inf

@@ -16,7 +16,7 @@ _SHORT = 1e-8  # of Δt²: the series' next term is its square over 120
 
 
 def path_and_factor(target: Target | None) -> tuple[Target | None, float]:
-    """Return the γ-agent's path and the factor of its p_r, unwrapped."""
+    """Return the γ-agent's path without its velocity rescaling, and the factor by which p_r is rescaled."""
     return (target.target, target.factor) if isinstance(target, RescaledVelocity) else (target, 1.0)
 
 
@@ -58,7 +58,7 @@ def steady_motion(gains: Gains, moving: Motion) -> tuple[FloatArray, ComplexArra
 
 
 def steady_error(gains: Gains, target: Target) -> tuple[float, float]:
-    """Return sup ‖q_c − q_r‖ after the transient: (of the line, of the oscillation).
+    """Return the steady errors sup ‖q_c − q_r‖ from the line and from the oscillation of the γ-agent.
 
     On a line the centre lags by c2γ ‖v − p_r‖/c1γ, by nothing if p_r is the true velocity; on a sine or circle of
     size A by |G(jω) − 1| A.
@@ -112,7 +112,7 @@ def transient(
 
 
 def _decayed(gains: Gains, since: FloatArray, left: FloatArray, velocity: FloatArray) -> FloatArray:
-    """Return the decay of an offset and a velocity under x'' = −c1γ x − c2γ x', shape (T, m)."""
+    """Return the solution of x'' = −c1γ x − c2γ x' from an initial offset and velocity, shape (T, m)."""
     since = since[:, None]
     decay, radicand = 0.5 * gains.c2_gamma, CentreOfMass(gains).discriminant
     root = np.sqrt(complex(radicand))

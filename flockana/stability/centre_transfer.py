@@ -57,7 +57,7 @@ class CentreOfMass:
 
     @property
     def damping_ratio(self) -> float:
-        """ζ = c2γ/(2 √c1γ); infinite without a pull."""
+        """Damping ratio ζ = c2γ/(2 √c1γ); infinite for c1γ = 0."""
         return float(self.gains.c2_gamma / (2.0 * self.natural_frequency)) if self.gains.c1_gamma > 0.0 else inf
 
     @property
@@ -83,18 +83,18 @@ class CentreOfMass:
 
     @property
     def period(self) -> float:
-        """Period 2π/√(c1γ − c2γ²/4) of the damped oscillation; infinite without one."""
+        """Period 2π/√(c1γ − c2γ²/4) of the damped oscillation; infinite without an oscillation."""
         return 2.0 * pi / sqrt(-self.discriminant) if self.discriminant < 0.0 else inf
 
     def system(self) -> TransferFunction:
-        """Return G(s) as a `control.TransferFunction`."""
+        """Return the transfer function G(s) of the centre as a `control.TransferFunction`."""
         import control
 
         c1, c2 = self.gains.c1_gamma, self.gains.c2_gamma
         return control.TransferFunction([self.factor * c2, c1], [1.0, c2, c1], inputs="q_r", outputs="q_c")
 
     def response(self, omega: Any) -> Any:
-        """Return G(jω), complex, in the shape of `omega`.
+        """Return the centre's frequency response G(jω), complex, in the shape of `omega`.
 
         Parameters
         ----------
@@ -123,7 +123,7 @@ class CentreOfMass:
         return control.step_response(CentreOfMass(self.gains, 0.0).system(), ensure_series("t", t))
 
     def frequency_response(self, omega: Any) -> FrequencyResponseData:
-        """Return magnitude and phase over frequency, by python-control.
+        """Return magnitude and phase of the centre's response over frequency, by python-control.
 
         Parameters
         ----------
@@ -156,7 +156,7 @@ def predicted_gain(gains: Gains, omega: float, *, factor: float = 1.0) -> float:
 
 
 def map_gain(law: DiscreteLaw, omega: float, *, factor: float = 1.0) -> float:
-    """Return `predicted_gain` of a map with a linear centre of mass: |G_q(e^jωh) + factor jω G_p(e^jωh)|."""
+    """Return the amplitude ratio |G_q(e^jωh) + factor jω G_p(e^jωh)| of a map's centre to the γ-agent."""
     omega, system = ensure_finite_scalar("omega", omega), law.centre_system()
     if system is None:
         raise ArgumentError(f"{type(law).__name__}: expected a map whose centre of mass follows a target linearly")

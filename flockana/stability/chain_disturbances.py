@@ -129,7 +129,7 @@ class StringStability:
 
     @property
     def why(self) -> str:
-        """Reason for the decision, in a sentence with its numbers."""
+        """Reason for the decision on string stability, in a sentence with its numbers."""
         gains = ", ".join(f"{gain:.4g}" for gain in self.gains.tolist())
         if self.stable is None:
             trend_text = "grow" if (np.diff(self.gains) > _TOLERANCE).all() else "do not all grow"
@@ -187,7 +187,7 @@ def string_stability(chain: Callable[[int], LinearFlock], sizes: Numbers = (3, 5
 
 
 def _link_gain(flock: LinearFlock, gain: float) -> float:
-    """Return the gain per link that decides chains of every length, or NaN for other nets."""
+    """Return the gain per link if it decides on uniform chains of every length, or NaN for other nets."""
     n, m = flock.q.shape
     parts = []
     for matrix in (flock.stiffness.toarray(), flock.damping.toarray()):

@@ -25,7 +25,7 @@ _LEFT = 0.1  # of a unit vector, beyond the blocks so far: enough to begin anoth
 
 
 def split_into_blocks(four: Four, *, neutral: bool = True) -> list[Four]:
-    """Return the blocks of K₀, D₀, K₁, D₁ in an orthonormal basis, equal ones once; the four themselves if whole.
+    """Return the common diagonal blocks of K₀, D₀, K₁, D₁, each once, or these matrices if unsplit.
 
     Blocks are coupled by rounding at most (see `ROUNDINGS`). A part of a block that is 0 to rounding is 0; where one is
     so small beside the whole that rounding would matter in it, the four stay whole.
@@ -72,7 +72,7 @@ def _without_rounding(block: Four, tolerances: list[float]) -> Any:
 
 
 def _different(blocks: list[Four], tolerances: list[float]) -> list[Four]:
-    """Return the blocks, each of those that agree once."""
+    """Return the distinct blocks, one of each set of blocks that are equal within tolerances."""
     kinds: list[Four] = []
     for block in blocks:
         alike = [kind for kind in kinds if len(kind[0]) == len(block[0])]
@@ -85,7 +85,7 @@ def _different(blocks: list[Four], tolerances: list[float]) -> list[Four]:
 
 
 def _bases(parts: Sequence[FloatArray]) -> list[FloatArray]:
-    """Return orthonormal bases of the blocks that matrices have in common."""
+    """Return orthonormal bases of the subspaces that jointly block-diagonalise several matrices."""
     if not parts:
         return []
     values, vectors = np.linalg.eigh(sum((x + x.T) / sqrt(k + 2.0) for k, x in enumerate(parts)))
@@ -102,7 +102,7 @@ def _bases(parts: Sequence[FloatArray]) -> list[FloatArray]:
 
 
 def _block_of(direction: FloatArray, parts: Sequence[FloatArray], starts: IndexArray) -> FloatArray:
-    """Return a basis of what matrices lead to from a direction, each of its vectors within one eigenspace.
+    """Return a basis, by eigenspaces, of the invariant subspace that matrices generate from a direction.
 
     Where an eigenspace holds two directions of a block one may be missed: then the blocks are coupled, and not used.
     """

@@ -43,7 +43,7 @@ def consensus_system(laplacian: Any) -> DelaySystem:
 
 
 def _closed_groups(matrix: FloatArray) -> int:
-    """Return the strongly connected groups of agents that hear nobody outside."""
+    """Return the number of strongly connected groups of agents that hear no agent outside the group."""
     import networkx
 
     heard_graph = networkx.from_numpy_array(matrix - np.diag(np.diag(matrix)), create_using=networkx.DiGraph)

@@ -31,7 +31,7 @@ _SEARCHES = 4  # poles from which the distance to a flock that is not controllab
 
 
 class PoleReach(NamedTuple):
-    """Reachable part of one pole by forces on the informed agents.
+    """Controllability of one pole by forces on the informed agents: multiplicity, dimensions, strength.
 
     Attributes
     ----------
@@ -125,7 +125,7 @@ class Controllability:
 
 
 class ScaledModel(NamedTuple):
-    """First-order matrix in units of the fastest motion, that unit, (n, m), and the neutral motions."""
+    """State matrix A of a flock in units of its fastest rate, that rate, the shape (n, m), neutral motions."""
 
     A: FloatArray
     pace: float
@@ -142,7 +142,7 @@ class ScaledModel(NamedTuple):
 
 
 def scaled_model(flock: LinearFlock) -> ScaledModel:
-    """Return the model of a linearised flock, its neutral motions as a basis of states."""
+    """Return the first-order model of a linearised flock in units of its fastest rate, with neutral motions."""
     ensure_fits("A", flock.A_sparse.shape, "ask of fewer agents")
     k, d, pace = flock.stiffness.toarray(), flock.damping.toarray(), flock.second_order.fastest_rate
     zero, identity = np.zeros_like(k), np.eye(len(k))
@@ -214,7 +214,7 @@ class PoleGroup(NamedTuple):
 
 
 def pole_groups(model: ScaledModel) -> list[PoleGroup]:
-    """Return the distinct poles as groups."""
+    """Return the poles of a model, grouped where indistinguishable within rounding."""
     from scipy.sparse.csgraph import connected_components
 
     values, errors = eigenvalues(model.A)
@@ -253,7 +253,7 @@ def kernel_edge(group: PoleGroup, a: FloatArray) -> float:
 
 
 def distance_to_loss(model: ScaledModel, agents: Sequence[int], poles: Sequence[complex]) -> tuple[float, complex]:
-    """Return the least singular value of (A − s, B) found by searches from some poles, and s."""
+    """Return the distance to uncontrollability, the least σ of (A − s, B) in searches from poles, and s."""
     from scipy.optimize import minimize
 
     full_matrix = np.hstack([model.A, model.inputs(agents)])

@@ -8,7 +8,7 @@ LIMIT = 600.0  # seconds of estimated work, by default
 
 
 class Cost(NamedTuple):
-    """Seconds per size to a power, and megabytes per squared size."""
+    """Cost of a study: seconds per size to a power, and megabytes per squared size."""
 
     seconds: float
     power: int
@@ -31,7 +31,7 @@ def ensure_study(work: str, size: int, limit: float) -> None:
 
 
 def ensure_maps(work: str, size: int, inputs: FloatArray, limit: float) -> None:
-    """Raise before a search over lifted maps with many earlier inputs that would take longer than `limit`."""
+    """Raise before a study of lifted discrete maps with many delayed inputs that would exceed `limit` seconds."""
     states = size * (4.0 + inputs)
     seconds, megabytes = _SECONDS_OF_MAP * float((states**3).sum()), _MEGABYTES_OF_MAP * float(states.max()) ** 2
     ensure_affordable(f"{work} of {size} coordinates", size, seconds, megabytes, limit)

@@ -25,7 +25,7 @@ class DampedGain(NamedTuple):
 
 
 class _Here(NamedTuple):
-    """Mode at one value of the gain, with its equilibrium."""
+    """Followed mode at one value of the gain, with the linearisation about its equilibrium."""
 
     linear: Linearisation
     mode: Mode

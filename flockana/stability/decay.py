@@ -73,7 +73,7 @@ class Decay:
 
     @property
     def random_difference(self) -> float:
-        """Relative difference of the random start's rate from the linear system's."""
+        """Relative difference between the decay rate measured from a random start and the linear one."""
         return abs(self.random_measured / self.random_linear - 1.0)
 
 
@@ -190,7 +190,7 @@ class LinearRange:
         return float(fit.slope), float(fit.stderr) if small.sum() > 2 else inf
 
     def limit(self, deviation: float) -> float:
-        """Return the largest amplitude, in units of d, whose deviation stays below a share; interpolated.
+        """Return the largest amplitude, in units of d, at which linear prediction errs by less than a share.
 
         Parameters
         ----------
@@ -279,13 +279,13 @@ def linear_motion(flock: Linearisation, dq: FloatArray, dp: FloatArray, t: Float
 
 
 def velocity_mismatch(p: FloatArray) -> FloatArray:
-    """Return K̃ at every sample."""
+    """Return half the sum of squared velocity deviations from the mean, ½ Σ‖p_i − p_c‖², at every sample."""
     relative = p - p.mean(axis=1, keepdims=True)
     return 0.5 * np.sum(relative**2, axis=(1, 2))
 
 
 def logarithmic_slopes(mismatch: FloatArray, half: float) -> FloatArray:
-    """Return logarithmic slopes of sums over consecutive half periods."""
+    """Return logarithmic rates of change of the velocity mismatch, from sums over consecutive half periods."""
     sums = np.convolve(mismatch, np.ones(_SAMPLES), mode="valid")
     with np.errstate(divide="ignore", invalid="ignore"):  # where all has come to rest there is no slope
         slopes: FloatArray = np.log(sums[_SAMPLES:] / sums[:-_SAMPLES]) / half
@@ -293,13 +293,13 @@ def logarithmic_slopes(mismatch: FloatArray, half: float) -> FloatArray:
 
 
 def _count_above_floor(mismatch: FloatArray) -> int:
-    """Return the number of slopes before K̃ drowns in the errors of a run."""
+    """Return the number of logarithmic slopes before the velocity mismatch falls below a relative floor."""
     sums = np.convolve(mismatch, np.ones(_SAMPLES), mode="valid")[_SAMPLES:]
     return int(np.argmin(np.append(sums > _FLOOR * _SAMPLES * mismatch.max(), False)))
 
 
 def _margin(flock: Linearisation, mode: Mode, reach: float) -> float:
-    """Return the amplitude in units of d at which the first pair reaches the distance r, to first order."""
+    """Return the mode amplitude, in units of d, at which the first pair reaches the range r, to first order."""
     if not np.isfinite(reach):
         return inf
     i, j = np.triu_indices(len(flock.q), 1)

@@ -85,7 +85,7 @@ class DelaySystem(ShortRepr):
 
     @property
     def highest(self) -> float:
-        """Return a frequency above which no root crosses the imaginary axis, as s² dominates there."""
+        """Return a frequency above which no characteristic root crosses the imaginary axis."""
         k, d = (sum(float(np.linalg.norm(part[i], 2)) for part in (self.prompt, self.late)) for i in (0, 1))
         return 0.5 * (d + float(np.hypot(d, 2.0 * np.sqrt(k))))
 
@@ -103,7 +103,7 @@ class DelaySystem(ShortRepr):
         return s * s * np.eye(len(k0)) + k0 + s * d0 + (k1 + s * d1) * np.exp(-s * delay)
 
     def strong_parts(self) -> Iterator[DelaySystem]:
-        """Return the strongly connected parts; their roots together are all roots."""
+        """Return the delay systems of the strongly connected components, which together have all roots."""
         matrices, parts = (*self.prompt, *self.late), []
         for rows in strong_components(*matrices).indices:
             k0, d0, k1, d1 = (part[np.ix_(rows, rows)] for part in matrices)
@@ -140,7 +140,7 @@ class DelayMargin:
 
     @property
     def certified(self) -> bool:
-        """Whether the delay equals the margin to a millionth; otherwise the margin is at most the delay."""
+        """Whether the delay found equals the margin to a millionth; otherwise the margin is at most this delay."""
         return self.least >= (1.0 - 2.0 * CLOSE) * self.delay
 
 
@@ -158,7 +158,7 @@ def delayed_flock(flock: LinearFlock, delayed: str, carries: str, links: Any = N
 
 
 def late_part(matrix: FloatArray, m: int, delayed: str, links: Any = None) -> FloatArray:
-    """Return the delayed part of K or D, shape (n m, n m): see `delay_system`."""
+    """Return the delayed part of a stiffness or damping matrix K or D, shape (n m, n m)."""
     n = len(matrix) // m
     if links is None and delayed == "all":
         return matrix
@@ -204,7 +204,7 @@ def neutral_roots(kernel: FloatArray, cokernel: FloatArray, damping: FloatArray,
 
 
 def scalar_margin(k: float, d: float) -> DelayMargin:
-    """Return the delay margin of x'' = −k x(t−τ) − d x'(t−τ) in closed form.
+    """Return the delay margin of the scalar equation x'' = −k x(t−τ) − d x'(t−τ) in closed form.
 
     On the axis k + jωd = ω² e^jωτ: ω² = (d² + √(d⁴ + 4k²))/2 and τ = atan2(ωd, k)/ω.
 
@@ -278,7 +278,7 @@ def delay_margin(system: DelaySystem, *, progress: bool = False, limit: float = 
 
 
 def _ensure_affordable(part: DelaySystem, limit: float) -> None:
-    """Raise before the margin of a part whose modes or search would take longer than a limit."""
+    """Raise if computing the delay margin of a component would take longer than a time limit."""
     dimension = len(part.late[0])
     modes, spectra = _SECONDS * (2 * dimension) ** 3, _SPECTRA * _SECONDS_OF_SPECTRUM * dimension**3
     is_searched = spectra > limit and common_diagonals((*part.prompt, *part.late)) is None
@@ -287,7 +287,7 @@ def _ensure_affordable(part: DelaySystem, limit: float) -> None:
 
 
 def _margin_of_part(system: DelaySystem, advance: Callable[[float], object]) -> DelayMargin:
-    """Return the delay margin of a part that depends on no other part."""
+    """Return the delay margin of a strongly connected component of a delay system, taken by itself."""
     if system.highest == 0.0:
         return DelayMargin(inf, float("nan"), inf)
     unit = 2.0 ** int(np.log2(system.highest))  # of frequency: exact, and nothing overflows
@@ -306,7 +306,7 @@ def _margin_of_part(system: DelaySystem, advance: Callable[[float], object]) -> 
 def _crossing_of_blocks(
     four: Four, neutral: float, band: tuple[float, float], advance: Callable[[float], object]
 ) -> Crossing:
-    """Return the least crossing in a band of frequencies, block by block, in each beyond the best so far only."""
+    """Return the least delay crossing of the imaginary axis in a frequency band, searched block by block."""
     blocks, best, certified_delay = split_into_blocks(four, neutral=band[0] > 0.0), NO_CROSSING, inf
     for k, block in enumerate(blocks):
         crossing = None if block is four else modal_crossing(block, neutral, band[0])  # the whole has no common modes
@@ -318,7 +318,7 @@ def _crossing_of_blocks(
 
 
 def _still_crossing(system: DelaySystem) -> float:
-    """Return the least delay at which a further root reaches 0 without oscillation, from neutral motions."""
+    """Return the least delay at which another root reaches 0 without oscillating, due to neutral motions."""
     # There D − τK₁ on the kernel of K is singular where it is not for other delays.
     from scipy.linalg import eigvals
 
@@ -341,20 +341,20 @@ def _still_crossing(system: DelaySystem) -> float:
 
 
 def kernels(stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return bases of the right and the left kernel of K."""
+    """Return orthonormal bases of the right and the left kernel of a stiffness matrix K."""
     rows = np.abs(stiffness).sum(axis=1)
     kernel = kernel_of(stiffness, np.where(rows > 0.0, rows, 1.0), ZERO, symmetric=False)
     return kernel.right, kernel.left
 
 
 def _range(matrix: FloatArray) -> FloatArray:
-    """Return an orthonormal basis of the columns' span."""
+    """Return an orthonormal basis of the column space of a matrix."""
     left, singular_values, _ = np.linalg.svd(matrix)
     return left[:, : int(np.sum(singular_values > ZERO))]
 
 
 def _stable(system: DelaySystem) -> bool:
-    """Return whether every root without delay decays beyond rounding, neutral roots excepted."""
+    """Return whether every root of the undelayed flock decays beyond rounding, neutral roots excepted."""
     # These are the smallest; and what is 0 to rounding is one of them, for no delay brings it onto the axis elsewhere.
     is_stable = []
     for component in system.strong_parts():

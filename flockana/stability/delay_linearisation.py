@@ -72,7 +72,7 @@ class DelayLinearisation(ShortRepr):
 
     @cached_property
     def neutral(self) -> int:
-        """Number of roots at 0, of motions without a restoring force."""
+        """Number of characteristic roots at 0, which belong to motions without a restoring force."""
         zero = self.instant.second_order.invariant
         delayed_sum = sum((part.delay * part.stiffness for part in self.parts), np.zeros_like(self.parts[0].stiffness))
         return neutral_roots(zero.kernel, zero.cokernel, self.instant.damping.toarray(), delayed_sum)
@@ -119,11 +119,11 @@ class DelayLinearisation(ShortRepr):
         return DelaySystem(prompt[1:], late[1:], neutral_count)
 
     def delay_margin(self, *, progress: bool = False) -> DelayMargin:
-        """Return the longest stable delay of the delayed part; for several delays see `scaled_margin`."""
+        """Return the longest delay for which the flock is stable; for several delays see `scaled_margin`."""
         return delay_margin(self.system, progress=progress)
 
     def scaled_margin(self, most: float = 20.0) -> float:
-        """Return the least common factor on all delays at which a root reaches the axis, by search.
+        """Return the least common factor on all delays at which a root reaches the imaginary axis.
 
         Parameters
         ----------
@@ -162,7 +162,7 @@ class DelayLinearisation(ShortRepr):
         return damp_table([(str(k), s) for k, s in enumerate(roots.tolist(), 1)], settled=settled)
 
     def facts(self) -> dict[str, str]:
-        """Return the rows of the printed table: sizes, delays, and the rightmost roots."""
+        """Return the rows of the printed summary of a delayed flock: sizes, delays, and rightmost roots."""
         roots = [
             f"{s.real:.4g}{f' ± {s.imag:.4g}i' if s.imag else ''}" for s in self.rightmost(6).tolist() if s.imag >= 0
         ]

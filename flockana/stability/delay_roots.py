@@ -18,7 +18,7 @@ _LEFT = 1e-6  # of the characteristic matrix: what is left of it at a root, a do
 
 
 class LatePart(NamedTuple):
-    """Delayed part of K and D, with its delay."""
+    """Delayed terms of the stiffness K and damping D of a linear flock, with their delay."""
 
     delay: float
     stiffness: FloatArray
@@ -29,7 +29,7 @@ Parts = Sequence[LatePart]
 
 
 def characteristic(parts: Parts, s: complex) -> ComplexArray:
-    """Return s² + Σ (K_k + s D_k) e^(−sτ_k), singular at the roots."""
+    """Return the characteristic matrix s² + Σ (K_k + s D_k) e^(−sτ_k), singular at the roots."""
     full_matrix = s * s * np.eye(len(parts[0].stiffness), dtype=np.complex128)
     for delay, k, d in parts:
         full_matrix += (k + s * d) * np.exp(-s * delay)
@@ -37,7 +37,7 @@ def characteristic(parts: Parts, s: complex) -> ComplexArray:
 
 
 def _slope(parts: Parts, s: complex) -> ComplexArray:
-    """Return the derivative of `characteristic` by s."""
+    """Return the derivative of the characteristic matrix with respect to s."""
     full_matrix = 2.0 * s * np.eye(len(parts[0].stiffness), dtype=np.complex128)
     for delay, k, d in parts:
         full_matrix += (d - delay * (k + s * d)) * np.exp(-s * delay)
@@ -97,7 +97,7 @@ def rightmost(parts: Parts, neutral: int, *, nodes: int = 16, count: int = 6) ->
 
 
 def _neutral(parts: Parts) -> int:
-    """Return the number of roots at 0 of a group."""
+    """Return the number of characteristic roots at 0 of a group of agents that hear each other."""
     blank = np.zeros_like(parts[0].stiffness)
     stiffness, damping = sum((part.stiffness for part in parts), blank), sum((part.damping for part in parts), blank)
     delayed_sum = sum((part.delay * part.stiffness for part in parts), blank)
@@ -105,7 +105,7 @@ def _neutral(parts: Parts) -> int:
 
 
 def _of_group(parts: Parts, neutral: int, nodes: int, count: int) -> ComplexArray:
-    """Return the rightmost roots with Im s >= 0 of agents that hear each other, refined."""
+    """Return the refined rightmost roots with Im s >= 0 of a group of agents that hear each other."""
     size = len(parts[0].stiffness)
     zero, one = np.zeros((size, size)), np.eye(size)
     used_parts = [part for part in parts if part.stiffness.any() or part.damping.any()]
@@ -136,12 +136,12 @@ def _companion(part: LatePart) -> FloatArray:
 
 
 def root_error(system: DelaySystem, s: complex, delay: float) -> float:
-    """Return an error bound of a refined root, from the residual and rounding."""
+    """Return an error bound of a refined characteristic root, from its residual and rounding."""
     return error_of_root((LatePart(0.0, *system.prompt), LatePart(delay, *system.late)), s)
 
 
 def error_of_root(parts: Parts, s: complex) -> float:
-    """Return `root_error` for any number of delays."""
+    """Return an error bound of a characteristic root, for any number of delays."""
     u, singular_values, vh = np.linalg.svd(characteristic(parts, s))
     slope_size = abs(complex(u[:, -1].conj() @ _slope(parts, s) @ vh[-1].conj()))
     terms = (abs(np.exp(-s * tau)) * (np.linalg.norm(k) + abs(s) * np.linalg.norm(d)) for tau, k, d in parts)

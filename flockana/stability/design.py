@@ -33,7 +33,7 @@ _GRID = 10
 
 @dataclass(frozen=True)
 class GainDesign:
-    """Best gains found, equal and per agent, with their eigenvalues.
+    """Best γ-gains found, equal and per agent, with the resulting eigenvalues.
 
     Parameters
     ----------
@@ -59,17 +59,17 @@ class GainDesign:
     starts: int
 
     def __repr__(self) -> str:
-        """Return one line without the arrays."""
+        """Return a one-line text of the gain design, without its arrays."""
         rates = f"{self.rate_homogeneous:.4f} alike, {self.rate_heterogeneous:.4f} per agent"
         return f"<GainDesign of {self.problem.agents} agents: decay rates {rates}, ratio {self.ratio:.3f}>"
 
     @property
     def ratio(self) -> float:
-        """Ratio of decay rates, heterogeneous over equal gains; a lower bound."""
+        """Ratio of the decay rate with gains per agent to that with equal gains; a lower bound."""
         return self.rate_heterogeneous / self.rate_homogeneous
 
     def gains(self, base: Gains, *, heterogeneous: bool = True) -> Gains:
-        """Gains `base` with the designed c1γ and c2γ.
+        """Gains of a law, with the designed c1γ and c2γ in place of those in `base`.
 
         Parameters
         ----------
@@ -84,7 +84,7 @@ class GainDesign:
 
 
 class _Search(TypedDict, total=False):
-    """Keyword arguments of `design_gains`."""
+    """Keyword arguments of the gain search `design_gains`."""
 
     bounds: tuple[float, float] | None
     starts: int
@@ -219,7 +219,7 @@ def _minimise2(
     most: int = 200,
     finest: float = _SMALLEST,
 ) -> FloatArray:
-    """Return the pair of numbers between bounds that minimises a function, by a grid and a simplex search."""
+    """Return the pair of numbers in [low, high] that minimises a function, by a grid and a simplex search."""
     from scipy.optimize import minimize
 
     axis, grid_step = np.linspace(low, high, count), (high - low) / count
@@ -236,7 +236,7 @@ def _minimise2(
 
 
 def _descend(problem: GainProblem, gains: FloatArray, low: float, high: float) -> FloatArray:
-    """Minimise the largest linearised real part by sequential linear programming in a trust region."""
+    """Minimise the largest real part of the eigenvalues over gains, by sequential linear programming."""
     from scipy.optimize import linprog
 
     radius, value = 0.2 * (high - low), problem.abscissa(gains)

@@ -29,7 +29,7 @@ def eigenvalues(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, Flo
 
 
 def eigen(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, ComplexArray, FloatArray]:
-    """Return eigenvalues, right eigenvectors, and error bounds from rounding and matrix errors.
+    """Return eigenvalues, right eigenvectors, and eigenvalue error bounds from rounding and matrix errors.
 
     The matrix itself may be off by the share `off` of its size. A block triangular matrix has the
     eigenvalues of its strongly connected components, with the errors of these.
@@ -74,7 +74,7 @@ def eigen_of_one(matrix: FloatArray, off: float = 0.0) -> tuple[ComplexArray, Co
 
 
 def _take_apart(values: ComplexArray, vectors: ComplexArray, rounding: float) -> None:
-    """Replace conjugate pairs off the real axis only by rounding with two real eigenvalues."""
+    """Replace conjugate pairs with imaginary parts within rounding by two real eigenvalues each."""
     # The two of a defective pair (critical damping) come out further apart, or share one direction: these stay a pair.
     for k in np.flatnonzero((values.imag > 0.0) & (values.imag <= rounding)).tolist():
         turned = vectors[:, k] * np.exp(-0.5j * np.angle(np.sum(vectors[:, k] ** 2)))  # real part across the imaginary
@@ -84,7 +84,7 @@ def _take_apart(values: ComplexArray, vectors: ComplexArray, rounding: float) ->
 
 
 def _together(values: ComplexArray, size: float, tight: float) -> FloatArray:
-    """Return the largest error of each eigenvalue's cluster; infinite for a single eigenvalue."""
+    """Return the error bound of each eigenvalue in a cluster of close ones; infinite for one that is alone."""
     # Of coalesced roots that came out apart the eigenvectors tell; where they came out exactly equal, yᴴx may be 0.
     from scipy.spatial import cKDTree
 
@@ -94,7 +94,7 @@ def _together(values: ComplexArray, size: float, tight: float) -> FloatArray:
 
 
 def root_error(value: complex, stiffness: float, damping: float, errors: tuple[float, float]) -> float:
-    """Return the error of a root of λ² + damping λ + stiffness from errors of the coefficients."""
+    """Return the error of a root of λ² + damping λ + stiffness, given the errors of both coefficients."""
     push, slope = errors[0] + abs(value) * errors[1], abs(2.0 * value + damping)
     double = float(np.sqrt(push))
     return min(push / slope, double) if slope > 0.0 else double
@@ -126,7 +126,7 @@ def slowest_first(values: ComplexArray, errors: FloatArray) -> list[int]:
 
 
 def _levels(indices: Iterable[int], sizes: FloatArray, errors: FloatArray) -> list[list[int]]:
-    """Return indices by rising size, grouped where they agree within errors."""
+    """Return the indices of numbers in rising order, grouped where these agree within their errors."""
     levels: list[list[int]] = []
     for k in sorted(indices, key=lambda k: float(sizes[k])):
         if levels and sizes[k] - sizes[levels[-1][-1]] <= errors[k] + errors[levels[-1][-1]]:

@@ -68,7 +68,7 @@ class VelocityLinearisation:
 
     @cached_property
     def A(self) -> FloatArray:  # noqa: N802  # what control engineers call it
-        """State matrix as a dense array."""
+        """State matrix A of the linearised first-order law, as a dense array."""
         ensure_fits("A", self.A_sparse.shape, "use A_sparse")
         return self.A_sparse.toarray()
 
@@ -194,7 +194,7 @@ class VelocityLinearisation:
         return control.ss(self.A, eye, eye, 0.0 * eye, states=state_names, outputs=state_names, inputs=pushes)
 
     def facts(self) -> dict[str, str]:
-        """Return the rows of the printed table: sizes, poles, zero modes and stability."""
+        """Return the rows of the printed summary of a first-order law: sizes, poles, zero modes and stability."""
         (n, m), values = self.q.shape, self.eigenvalues
         rows = {"law": f"{self.law.title}, of first order", "agents": f"{n}, m = {m}", "poles": f"{values.size}"}
         rows |= {"zero modes": f"{self.zero_modes}", "stable": "yes" if self.stable else "no"}

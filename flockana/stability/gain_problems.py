@@ -46,7 +46,7 @@ class GainProblem:
 
     @property
     def _kept(self) -> tuple[FloatArray, FloatArray]:
-        """Return bases of positions and velocities orthogonal to the projected motions."""
+        """Return bases of the positions and velocities that remain when some motions are projected out."""
         kept_space = complement(self.apart)
         return kept_space, kept_space if self.speeds else np.eye(len(self.stiffness))
 
@@ -57,16 +57,16 @@ class GainProblem:
         return reduced(self.stiffness + np.diag(pull), self.damping + np.diag(drag), *self._kept)
 
     def eigenvalues(self, gains: FloatArray) -> ComplexArray:
-        """Return the eigenvalues of `matrix`, largest real part first."""
+        """Return the eigenvalues of the state matrix for given gains, largest real part first."""
         values: ComplexArray = np.linalg.eigvals(self.matrix(gains)).astype(np.complex128)
         return values[np.lexsort((values.imag, -values.real))]
 
     def abscissa(self, gains: FloatArray) -> float:
-        """Return the largest real part, minus the decay rate of the slowest mode."""
+        """Return the largest real part of the eigenvalues for given gains: minus the slowest decay rate."""
         return float(np.linalg.eigvals(self.matrix(gains)).real.max())
 
     def slopes(self, gains: FloatArray) -> tuple[ComplexArray, FloatArray]:
-        """Return eigenvalues and the derivatives of their real parts by the gains, shapes (M,) and (M, 2 n)."""
+        """Return eigenvalues and derivatives of their real parts with respect to gains, (M,) and (M, 2 n)."""
         # dλ = y* dA x/(y* x) with left and right eigenvectors y, x; meaningless where eigenvalues coalesce.
         from scipy.linalg import eig
 

@@ -25,7 +25,7 @@ GAINS = ("c1_alpha", "c2_alpha", "c1_gamma", "c2_gamma")
 
 @dataclass(frozen=True)
 class Sweep:
-    """Branches of eigenvalues against one gain."""
+    """Eigenvalues of a flock or of its centre of mass, as branches against one gain."""
 
     name: str
     values: FloatArray  # shape (L,)
@@ -34,7 +34,7 @@ class Sweep:
 
     @property
     def abscissa(self) -> FloatArray:
-        """Return the largest real part at each value, without neutral ones, shape (L,); NaN without others."""
+        """Return the largest real part of eigenvalues at each gain, neutral ones left out; NaN without others."""
         nonzero_eigenvalues = self.eigenvalues.real[:, self.neutral :]
         return nonzero_eigenvalues.max(axis=1) if nonzero_eigenvalues.shape[1] else np.full(len(self.values), np.nan)
 
@@ -116,7 +116,7 @@ def _rising(values: Any) -> FloatArray:
 
 
 def _joined(before: ComplexArray, after: ComplexArray) -> ComplexArray:
-    """Return `after` reordered to continue each branch of `before`, with the least squared distance."""
+    """Return the eigenvalues `after`, reordered so that each continues its branch of `before`."""
     from scipy.optimize import linear_sum_assignment
 
     return after[linear_sum_assignment(np.abs(before[:, None] - after[None, :]) ** 2)[1]]
@@ -136,7 +136,7 @@ class MarginSweep:
 
 
 def margin_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *, delayed: str = "all") -> MarginSweep:
-    """Return the delay margin of the followed equilibrium as one gain varies.
+    """Return the delay margin of an equilibrium that is followed as one gain varies.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def margin_sweep(law: Algorithm1 | Algorithm2, q: Any, name: str, values: Any, *
 def _followed(
     law: Any, q: Any, name: str, levels: FloatArray, *, follow: bool = True
 ) -> Iterator[tuple[Algorithm1 | Algorithm2, FloatArray]]:
-    """Yield laws with the values of one gain, and the equilibrium of each, continued from the last."""
+    """Yield a law for each value of one gain, with its equilibrium continued from the previous one."""
     if not isinstance(law, Algorithm1 | Algorithm2):
         raise ArgumentError(f"law = {format_value(law)}: expected Algorithm1(...) or Algorithm2(...)")
     ensure_known("gain", name, GAINS[:2] if law.target is None else GAINS)

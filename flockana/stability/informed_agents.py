@@ -112,7 +112,7 @@ def agents_to_inform(
 
 
 def _worth(each: Sequence[FloatArray], criterion: str) -> Callable[[Sequence[int]], float]:
-    """Return a measure of the summed Gramian of a set of agents."""
+    """Return a function that measures the summed controllability Gramian of a set of agents."""
     floor = _FLOOR * float(np.linalg.eigvalsh(sum(each[1:], each[0]))[-1])
 
     def value(agents: Sequence[int]) -> float:

@@ -30,7 +30,7 @@ _LEAST = 1e-13  # of the stiffness of its agents: rounding of the sums in which 
 def delay_system(
     law: Any, q: Any, *, delayed: str = "all", carries: str = "both", links: Any = None, strict: bool = True
 ) -> DelaySystem:
-    """Return the linearised flock with delayed interactions.
+    """Return the linearised flock of a law with delayed interactions.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ class NormTable:
 
 @check_kinds
 def norms_against_size(law: Algorithm1 | Algorithm2, sizes: Numbers) -> NormTable:
-    """Return H₂ and H∞ norms of relaxed hexagonal spirals of these sizes (in the plane).
+    """Return the H₂ and H∞ norms of relaxed hexagonal spirals of given sizes in the plane.
 
     Parameters
     ----------

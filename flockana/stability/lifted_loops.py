@@ -27,7 +27,7 @@ _WHOLE = 1e-9  # of a period: a delay so short is none
 
 
 def period_map(parts: Sequence[LatePart], period: float, clock: FloatArray) -> FloatArray:
-    """Return one period of q'' = u, u held, u = −Σ (K_k q(t − τ_k) + D_k q'(t − τ_k)) at each sample.
+    """Return the one-period map of q'' = u under delayed feedback that is sampled and held.
 
     Its state is (q, p, u, earlier u …) just after the last sample of a period, shape (N (2 + inputs),) twice.
     `clock` has when each coordinate is sampled, after the beginning of the period.
@@ -48,7 +48,7 @@ def period_map(parts: Sequence[LatePart], period: float, clock: FloatArray) -> F
 
 
 def _event(parts: Sequence[LatePart], ages: FloatArray, due: Any, period: float) -> FloatArray:
-    """Return the matrix from one sample's state to the next one's; `due` coordinates are sampled.
+    """Return the matrix from one sample's state to the next sample's; `due` coordinates are sampled there.
 
     The inputs of the state began `ages` before the next sample.
     """
@@ -57,7 +57,7 @@ def _event(parts: Sequence[LatePart], ages: FloatArray, due: Any, period: float)
     first_age, starts = ages[0], np.concatenate([[0.0], ages])
 
     def forward(row: FloatArray) -> Any:
-        """Return rows of the next sample's q, p and inputs, from weighted inputs."""
+        """Return the block row of coefficients of q, p and the inputs, each times the identity matrix."""
         return np.kron(row, identity)
 
     q = forward(np.array([[1.0, first_age, 0.5 * first_age**2, *np.zeros(inputs - 1)]]))
@@ -77,7 +77,7 @@ def _event(parts: Sequence[LatePart], ages: FloatArray, due: Any, period: float)
 
 
 def moving_multipliers(parts: Sequence[LatePart], period: float, clock: FloatArray, neutral: int) -> ComplexArray:
-    """Return the multipliers of `period_map` off the neutral motions, the largest first."""
+    """Return the multipliers of the one-period map off the neutral motions, the largest first."""
     period_matrix = period_map(parts, period, clock)
     moving_basis = _motions(parts, len(period_matrix))
     values: ComplexArray = np.linalg.eigvals(moving_basis.T @ period_matrix @ moving_basis).astype(np.complex128)
@@ -104,7 +104,7 @@ def _motions(parts: Sequence[LatePart], states: int) -> FloatArray:
 
 
 def first_growth(radius: Callable[[float], float], trials: FloatArray) -> float:
-    """Return the least argument at which a radius exceeds 1, by trials and halving; infinity without one."""
+    """Return the least argument at which a spectral radius exceeds 1; infinity without one among the trials."""
     from scipy.optimize import brentq
 
     last_trial = None

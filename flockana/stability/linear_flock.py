@@ -69,7 +69,7 @@ class LinearFlock(ShortRepr):
     zero: float
 
     def facts(self) -> dict[str, str]:
-        """Return the rows of the printed table: sizes, zero modes, poles and the slowest modes."""
+        """Return the rows of the printed summary of a linear flock: sizes, zero modes, poles and slowest modes."""
         rows = {
             "law": self.law.title,
             "agents": f"{self.q.shape[0]}, m = {self.q.shape[1]}, {len(self.links)} links",

@@ -143,7 +143,7 @@ class MapLinearisation(ShortRepr):
 
     @property
     def dt(self) -> float:
-        """Step, in time units."""
+        """Time step of the map, in time units."""
         return self.law.dt if self.step is None else self.step
 
     @cached_property
@@ -159,7 +159,7 @@ class MapLinearisation(ShortRepr):
         return values[np.lexsort((values.imag, -np.abs(values)))]
 
     def _grown(self, w: Any, derivative: int = 0) -> Any:
-        """Return R(dt w), or a derivative of R at dt w."""
+        """Return the growth polynomial R(dt w) of one step, or a derivative of R at dt w."""
         return Polynomial(self.growth).deriv(derivative)(self.dt * w)
 
     @property
@@ -190,7 +190,7 @@ class MapLinearisation(ShortRepr):
 
     @property
     def spectral_radius(self) -> float:
-        """Largest |z| off the neutral motions; NaN without other modes."""
+        """Largest modulus of the multipliers off the neutral motions; NaN without other modes."""
         return 1.0 - self.modes[0].decay_per_step if self.modes else float("nan")
 
     @property
@@ -251,7 +251,7 @@ def stepped_equation(
 
 
 def moved_before(matrix: Any, m: int) -> Any:
-    """Return the entries of a matrix that act on an agent with a smaller index."""
+    """Return the entries of a matrix by which agents depend on agents of smaller index."""
     entries = matrix.tocoo(copy=True)
     entries.data = np.where(entries.coords[1] // m < entries.coords[0] // m, entries.data, 0.0)
     return entries.tocsr()
@@ -310,7 +310,7 @@ def linearise_steps(law: DiscreteLaw, q: FloatArray, p: FloatArray, t: float) ->
         return np.concatenate([np.ravel(parts[key]) / sizes[key] for key in shapes])
 
     def stepped(state: FloatArray, steps: int = 0) -> FloatArray:
-        """Return the next state in the moving frame, after `steps` steps."""
+        """Return the map's state one step later in the moving frame, the step being number `steps`."""
         parts = zip(shapes.items(), np.split(state, ends[1:-1]), strict=True)
         values = {key: (part * sizes[key]).reshape(shape) for (key, shape), part in parts}
         drift, inner = steps * law.dt * p, {key: values[key] for key in memory}

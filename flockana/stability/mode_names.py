@@ -34,7 +34,7 @@ def _rotations(q: FloatArray) -> list[tuple[str, FloatArray]]:
 
 
 def pure_fields(q: FloatArray) -> list[tuple[str, FloatArray]]:
-    """Return the unit fields that name modes: uniform expansion, translations, rotations."""
+    """Return the unit displacement fields that name modes: uniform expansion, translations, rotations."""
     fields = [("breathing", (q - q.mean(axis=0)).ravel())]
     fields += [(f"translation {'xyz'[c]}", column) for c, column in enumerate(translations(*q.shape).T)]
     fields += _rotations(q)
@@ -42,7 +42,7 @@ def pure_fields(q: FloatArray) -> list[tuple[str, FloatArray]]:
 
 
 def name_kernel(kernel: FloatArray, q: FloatArray) -> tuple[list[str], FloatArray]:
-    """Return names and an orthonormal basis of a kernel, rigid motions first."""
+    """Return names and an orthonormal basis of a stiffness kernel, rigid motions first."""
     names: list[str] = []
     basis = np.zeros((q.size, 0))
     for name, flow in pure_fields(q):
@@ -64,7 +64,7 @@ def name_kernel(kernel: FloatArray, q: FloatArray) -> tuple[list[str], FloatArra
 
 
 def _complement(kernel: FloatArray, named: FloatArray) -> FloatArray:
-    """Return an orthonormal basis of a kernel's complement to `named`."""
+    """Return an orthonormal basis of the part of a kernel that is orthogonal to the named motions."""
     if kernel.shape[1] == 0:
         return kernel
     basis, singular_values, _ = np.linalg.svd(kernel - named @ (named.T @ kernel), full_matrices=False)

@@ -85,7 +85,7 @@ class Mode:
 
 
 class Invariant(NamedTuple):
-    """Invariant subspace of separated modes, right and left (2nm, r).
+    """Invariant subspace, right and left (2nm, r), of the zero modes and of a separate centre of mass.
 
     `chains` counts the zero modes along which a velocity persists (Jordan blocks), `drifting` names those that are
     a zero mode of their own, `neutral` (2nm, k + chains) spans all that does not decay nor grow but as a drift.
@@ -123,12 +123,12 @@ class SecondOrder:
 
     @cached_property
     def split(self) -> Split:
-        """Return the split into centre of mass and shape, with its coupling error."""
+        """Return the decoupling of centre of mass and shape, with its coupling error."""
         return split(self.stiffness, self.damping, self.q.shape[1])
 
     @cached_property
     def net(self) -> StrongComponents | None:
-        """Strongly connected components; None for one component, symmetric matrices, or a split centre of mass."""
+        """Strongly connected components; None if there is one, K and D are symmetric or the centre decouples."""
         if self.symmetric or self.split.exact:
             return None
         net = strong_components(self.stiffness, self.damping)
@@ -136,11 +136,11 @@ class SecondOrder:
 
     @cached_property
     def parts(self) -> tuple[SecondOrder, ...]:
-        """Problems of the strongly connected components; empty for one component."""
+        """Quadratic eigenproblems of the strongly connected components; empty for one component."""
         return tuple(self._part(rows) for rows in self.net.indices) if self.net else ()
 
     def _part(self, rows: IndexArray) -> SecondOrder:
-        """Return the problem of a component, of whole agents or of single coordinates."""
+        """Return the quadratic eigenproblem of a component, of whole agents or of single coordinates."""
         m = self.q.shape[1]
         agents = np.unique(rows // m)
         q = self.q[agents] if agents.size * m == rows.size else np.zeros((rows.size, 1))
@@ -166,7 +166,7 @@ class SecondOrder:
 
     @cached_property
     def invariant(self) -> Invariant:
-        """Return the separated modes from the whole kernel of K (dense)."""
+        """Return the invariant subspace of the modes treated apart, from the whole kernel of K (dense)."""
         zero_subspace = self._zero_subspace(self.kernel.right, self.kernel.left)
         if not self.net:
             return zero_subspace
@@ -205,7 +205,7 @@ class SecondOrder:
 
     @cached_property
     def eigenvalues(self) -> ComplexArray:
-        """Return all 2nm eigenvalues, the largest real part first; zeros exact."""
+        """Return all 2nm eigenvalues, the largest real part first; those of zero modes are exactly 0."""
         rest = [part.eigenvalues[part.eigenvalues != 0.0] for part in self.parts] if self.net else [self._others[0]]
         whole = np.concatenate([self.invariant.eigenvalues, *rest])
         return whole[np.lexsort((whole.imag, abs(whole.imag), -whole.real))]
@@ -216,7 +216,7 @@ class SecondOrder:
         return sorted(ranked_modes, key=lambda one: one[:2])
 
     def spread(self, k: int, mode: Mode) -> ComplexArray:
-        """Return a mode of component k in all coordinates: its own, and those of components that hear it."""
+        """Return a mode of component k extended to all coordinates, with the response of components that hear it."""
         from scipy.sparse import csc_array, eye_array
         from scipy.sparse.linalg import splu
 
@@ -241,7 +241,7 @@ class SecondOrder:
         return shape
 
     def _follow_one_by_one(self, shape: Any, s: complex, first: int) -> None:
-        """Solve for the responses of all components from number `first` on, if they overflow together."""
+        """Solve in turn for the response to a mode of each component after number `first`, into `shape`."""
         assert self.net is not None
         for rows in self.net.indices[first + 1 :]:
             coupling_block = self.stiffness.tocsr()[rows] + s * self.damping.tocsr()[rows]
@@ -254,7 +254,7 @@ class SecondOrder:
 
     @cached_property
     def _others(self) -> tuple[ComplexArray, ComplexArray, FloatArray]:
-        """Return eigenvalues, displacements and rounding errors of the remaining modes."""
+        """Return eigenvalues, displacements and rounding errors of the modes outside the invariant subspace."""
         if self.net:
             local = self.local_modes()
             shapes = [self.spread(k, mode) for _, k, mode in local]
@@ -276,16 +276,16 @@ class SecondOrder:
 
     @cached_property
     def fastest_rate(self) -> float:
-        """Largest |λ|, which scales positions relative to velocities; 1 if all are 0."""
+        """Largest modulus of the eigenvalues, which scales positions relative to velocities; 1 if all are 0."""
         return float(np.abs(self.eigenvalues).max(initial=0.0)) or 1.0
 
     @cached_property
     def quotient(self) -> Quotient:
-        """Return the dynamics off the zero modes, of states modulo neutral motions (dense)."""
+        """Return the linear dynamics off the zero modes, of states modulo neutral motions (dense)."""
         return self.quotient_at(self.pace)
 
     def quotient_at(self, pace: float) -> Quotient:
-        """Return the dynamics off the zero modes, with positions scaled by a rate."""
+        """Return the linear dynamics off the zero modes, with positions scaled by a given rate."""
         size, right = self.q.size, self.invariant.neutral.copy()
         if right.shape[1] != np.count_nonzero(self.eigenvalues == 0.0):
             raise SolverError("zero modes come in chains longer than two here: their quotient is not known")
@@ -307,7 +307,7 @@ class SecondOrder:
         return tuple(mode if mode.name else replace(mode, name=str(k)) for k, mode in enumerate(modes, start=1))
 
     def _zero_subspace(self, kernel: FloatArray, cokernel: FloatArray) -> Invariant:
-        """Return generalised eigenvectors at 0 and the centre's own motion."""
+        """Return the subspace of generalised eigenvectors at 0 and the motion of the centre of mass."""
         k = kernel.shape[1]
         names, kernel = name_kernel(kernel, self.q)
         drag = cokernel.T @ (self.damping @ kernel)  # a zero mode is semisimple iff D pushes it out of the range of K
@@ -360,7 +360,7 @@ class SecondOrder:
         return Invariant(*known, *spaces, chains, tuple(sorted(drifting)), np.hstack(neutral))
 
     def _against(self, motion: FloatArray, *, transposed: bool = False) -> FloatArray:
-        """Return x with K x = −D motion (Kᵀ x = −Dᵀ motion); 0 if D motion is 0."""
+        """Return the displacement x whose stiffness force balances the damping of a motion: K x = −D motion."""
         matrix, damping = (self.stiffness.T, self.damping.T) if transposed else (self.stiffness, self.damping)
         push = damping @ motion
         if not push.size or np.abs(push).max() <= self.zero * float((abs(damping) @ np.abs(motion)).max()):
@@ -369,7 +369,7 @@ class SecondOrder:
 
 
 def _orthogonal_factor(basis: FloatArray) -> Callable[[str, str, FloatArray], FloatArray]:
-    """Return the function that multiplies by Q or Qᵀ, whose first columns span the basis."""
+    """Return a function that multiplies by the orthogonal Q or Qᵀ of a basis' QR factorisation."""
     # Q is never formed: a few reflections cost a few passes over what they act on.
     from scipy.linalg.lapack import dgeqrf, dormqr
 
@@ -384,7 +384,7 @@ def _orthogonal_factor(basis: FloatArray) -> Callable[[str, str, FloatArray], Fl
 
 
 def _roots(stiffness: float, damping: float, errors: tuple[float, float]) -> list[complex]:
-    """Return both roots of λ² + damping λ + stiffness; zero first, double roots exactly double."""
+    """Return both roots of λ² + damping λ + stiffness = 0, zero first, double where errors allow it."""
     if stiffness == 0.0:
         return [0j, complex(0.0 - damping)]
     radicand = damping**2 - 4.0 * stiffness

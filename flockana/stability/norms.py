@@ -51,7 +51,7 @@ def disturbance_system(flock: Blocks) -> StateSpace:
 
 
 def h2_norm(system: StateSpace) -> float:
-    """Return the H₂ norm, from white noise of unit intensity in every input to the output.
+    """Return the H₂ norm of a linear system, from white noise of unit intensity in every input to the output.
 
     The controllability Gramian of the balanced system by Bartels and Stewart's method (scipy); infinite unless the
     system is stable. White noise in continuous time that reaches an output directly, D != 0, has infinite variance
@@ -90,7 +90,7 @@ def h2_norm(system: StateSpace) -> float:
 
 
 class Balanced(NamedTuple):
-    """System with states scaled by powers of 2 to similar size."""
+    """State-space system with states scaled by powers of 2 to similar magnitude."""
 
     a: FloatArray
     b: FloatArray
@@ -100,7 +100,7 @@ class Balanced(NamedTuple):
 
     @property
     def stable(self) -> bool:
-        """Return whether every mode decays, beyond rounding."""
+        """Return whether every mode of the state-space system decays, beyond rounding."""
         values, errors = eigenvalues(self.a)
         return bool(np.all((np.abs(values) - 1.0 if self.discrete else values.real) < -errors))
 
@@ -113,7 +113,7 @@ class Balanced(NamedTuple):
         return np.asarray(self.c @ solve_discrete_lyapunov(self.a, self.b @ self.b.T) @ self.c.T + self.d @ self.d.T)
 
     def continuous(self) -> Balanced:
-        """Return the system over s = (z − 1)/(z + 1), with the same gains at s = j tan(ω dt/2)."""
+        """Return a discrete system as a continuous one over s = (z − 1)/(z + 1), with the same gains."""
         if not self.discrete:
             return self
         identity = np.eye(len(self.a))
@@ -122,14 +122,14 @@ class Balanced(NamedTuple):
         return Balanced(a, b, c, self.d - self.c @ inverse @ self.b, discrete=False)
 
     def gain(self, omega: float) -> float:
-        """Return the largest gain at a frequency, of a system in continuous time."""
+        """Return the largest gain (singular value) at a frequency, of a system in continuous time."""
         if omega == inf or not len(self.a):
             return float(np.linalg.norm(self.d, 2))
         answer = np.linalg.solve(1j * omega * np.eye(len(self.a)) - self.a, self.b)
         return float(np.linalg.norm(self.c @ answer + self.d, 2))
 
     def crossings(self, level: float) -> FloatArray:
-        """Return the frequencies >= 0 with gain `level`, above that of D, by eigenvalues of a Hamiltonian."""
+        """Return the frequencies >= 0 at which a gain equals `level`, from eigenvalues of a Hamiltonian matrix."""
         a, b, c, d = self.a, self.b, self.c, self.d
         input_map = np.linalg.solve(level**2 * np.eye(d.shape[1]) - d.T @ d, np.hstack([d.T @ c, level * b.T]))
         output_map = level * c.T @ np.linalg.solve(level**2 * np.eye(d.shape[0]) - d @ d.T, c)
@@ -211,7 +211,7 @@ def h2_bounds(flock: Blocks) -> tuple[float, float]:
 
 
 def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
-    """Return (H∞ norm, frequency of the peak), the largest gain over all harmonic disturbances.
+    """Return the H∞ norm of a linear system, and the frequency of its peak.
 
     Bruinsma and Steinbuch (1990): a gain is exceeded exactly where the Hamiltonian matrix has imaginary eigenvalues,
     between which the next frequencies are tried. The norm is at least what is returned, and at most (1 + tol) times.
@@ -248,7 +248,7 @@ def hinf_norm(system: StateSpace, *, tol: float = 1e-9) -> tuple[float, float]:
 
 
 def largest_gain(system: Balanced, tol: float, seen: Iterable[float] = ()) -> tuple[float, float]:
-    """Return (H∞ norm, frequency) of a stable continuous-time system; `seen` are initial frequencies."""
+    """Return the H∞ norm and peak frequency of a stable continuous-time system; `seen` are first trials."""
     poles = np.linalg.eigvals(system.a)
     trials = np.unique(np.concatenate([[0.0], np.abs(poles), np.abs(poles.imag)]))
     best_gain = max((system.gain(w), w) for w in (*seen, *trials.tolist()[:: max(1, trials.size // 24)], inf))

@@ -38,13 +38,13 @@ class LossMargin:
 
 
 class _Step(NamedTuple):
-    """Random step x⁺ = (lost + Σ θ_i heard_i) x, with independent θ_i = 1 with probability 1 − loss, else 0."""
+    """Random step x⁺ = (A₀ + Σ θ_i A_i) x, independent θ_i = 1 with probability 1 − loss, else 0."""
 
     lost: FloatArray
     heard: tuple[FloatArray, ...]
 
     def radius(self, loss: float) -> float:
-        """Return the spectral radius of E[A ⊗ A]."""
+        """Return the spectral radius of E[A ⊗ A] of a random step x⁺ = A x, for a loss probability."""
         from scipy.sparse.linalg import LinearOperator, eigs
 
         mean, dimension = self.lost + (1.0 - loss) * sum(self.heard), len(self.lost)
@@ -109,7 +109,7 @@ def loss_margin(flock: LinearFlock, period: float, *, lost: str = "agent", on_lo
 
 
 def _step(flock: LinearFlock, period: float, lost: str, on_loss: str) -> _Step:
-    """Return the random step of the flock off its neutral motions; held inputs are states."""
+    """Return the random sampled step of a flock off its neutral motions, for a sampling period."""
     off, (n, m) = flock.second_order.quotient, flock.q.shape
     dimension, basis, pace = n * m, off.basis, off.pace
     one = np.eye(dimension)
@@ -137,7 +137,7 @@ def _step(flock: LinearFlock, period: float, lost: str, on_loss: str) -> _Step:
 
 
 def _links(flock: LinearFlock) -> list[tuple[Any, FloatArray]]:
-    """Return for each directed link the hearing agent's rows, and its coupling off neutral motions."""
+    """Return for each directed link the rows of the hearing agent, and the coupling off neutral motions."""
     quotient, (n, m) = flock.second_order.quotient, flock.q.shape
     k, d, channels = flock.stiffness.toarray(), flock.damping.toarray(), []
     is_linked = (np.abs(k) + np.abs(d)).reshape(n, m, n, m).any(axis=(1, 3)) & ~np.eye(n, dtype=bool)

@@ -74,22 +74,22 @@ class RobustnessMargins(ShortRepr):
 
     @property
     def phase(self) -> float:
-        """Least phase margin, in degrees."""
+        """Least phase margin of all loops, in degrees."""
         return min(loop.phase for loop in self.loops)
 
     @property
     def disk(self) -> float:
-        """Least disk margin."""
+        """Least disk margin of all loops."""
         return min(loop.disk for loop in self.loops)
 
     @property
     def sensitivity(self) -> float:
-        """Largest sensitivity peak."""
+        """Largest sensitivity peak of all loops."""
         return max(loop.sensitivity for loop in self.loops)
 
     @property
     def table(self) -> dict[str, dict[str, float]]:
-        """Table of all margins by loop and kind, for `flockana.plots.bars`."""
+        """Table of gain, phase and disk margins and sensitivity peaks by loop, for `flockana.plots.bars`."""
         return {
             f"agent {loop.agent}, {'xyz'[loop.axis]}": {
                 "least gain": loop.gain[0],
@@ -186,7 +186,7 @@ def _peaks(problem: SecondOrder) -> FloatArray:
 
 
 def _gains_are_masses(problem: SecondOrder) -> bool:
-    """Return whether all masses are stable: K and D symmetric, K >= 0, and D > 0 off common kernels."""
+    """Return whether K and D are symmetric, K >= 0, and D > 0 off common kernels."""
     if not problem.symmetric:
         return False
     k, d = (0.5 * (x + x.T) for x in (problem.stiffness.toarray(), problem.damping.toarray()))

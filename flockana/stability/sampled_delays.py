@@ -22,14 +22,14 @@ _BRIEF = 1e-3  # of the shortest time of the flock: the shortest period that is 
 
 
 def _multiplier(system: DelaySystem, delay: float, period: float) -> complex:
-    """Return the largest multiplier of one period off the neutral motions; 0 without other motions."""
+    """Return the multiplier of largest modulus of a one-period map off the neutral motions; 0 if none."""
     clock, parts = np.zeros(len(system.prompt[0])), (LatePart(0.0, *system.prompt), LatePart(delay, *system.late))
     values = moving_multipliers(parts, period, clock, system.neutral)
     return complex(values[0]) if values.size else 0j
 
 
 def _search(radius: Callable[[float], float], trials: FloatArray, whole: FloatArray) -> float:
-    """Return the least argument at which a radius exceeds 1: on a grid, then at the nearest of `whole` below."""
+    """Return the least argument at which a spectral radius exceeds 1, on a grid and at values of `whole`."""
     # Between multiples of the period a delay changes little; there growth may begin, end at once, and begin again.
     growth = first_growth(radius, trials)
     if growth in (0.0, inf):

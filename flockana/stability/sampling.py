@@ -34,7 +34,7 @@ _UNDAMPED = 1e-10  # of the largest damping rate
 
 @dataclass(frozen=True)
 class ModePeriod:
-    """Largest period for one mode.
+    """Largest sampling period for which one mode is stable.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class ModePeriod:
 
     @property
     def frequency(self) -> float:
-        """Frequency arg z/h, in radians per time unit, of the marginal oscillation."""
+        """Frequency of the marginal oscillation at the largest stable period, in radians per time unit."""
         return abs(float(np.angle(self.multiplier))) / self.period if 0.0 < self.period < inf else nan
 
 
@@ -85,7 +85,7 @@ class SamplingMargin:
 
     @property
     def certified(self) -> bool:
-        """Return whether the margin is accurate to a millionth; otherwise it is at most `period`."""
+        """Return whether the sampling margin is accurate to a millionth; otherwise it is at most `period`."""
         return self.least >= (1.0 - CLOSE) * self.period
 
     @property
@@ -94,7 +94,7 @@ class SamplingMargin:
         return self.modes[0] if self.modes else None
 
     def times(self, dt: float) -> float:
-        """Return the margin divided by the step `dt`; above 1 the sampled flock is stable.
+        """Return the sampling margin divided by the step `dt`; above 1 the sampled flock is stable.
 
         Parameters
         ----------
@@ -105,7 +105,7 @@ class SamplingMargin:
 
 
 def scalar_period(k: float, d: float, factor: float = 0.5) -> tuple[float, complex]:
-    """Return (largest period, multiplier) of x'' = −k x − d x' sampled with `factor`, in closed form.
+    """Return the largest stable sampling period of x'' = −k x − d x', and the multiplier there.
 
     A damper alone, k = 0, keeps the multiplier 1 of its place, which is neutral.
 
@@ -189,7 +189,7 @@ def _explicit(flow: LinearFlock) -> tuple[float, list[ModePeriod]]:
 
 
 def _symmetric(flow: LinearFlock, k: FloatArray, d: FloatArray, factor: float) -> tuple[float, list[ModePeriod]]:
-    """Return (certified bound, modes) of symmetric K and D, without free undamped rigid motions."""
+    """Return a certified bound of the sampling period, and modes, for symmetric K and D."""
     scale = float(np.abs(k).max() * np.abs(d).max())
     if scale == 0.0 or np.abs(k @ d - d @ k).max() <= _COMMUTE * scale:
         return inf, _modal(k, d, factor)
@@ -207,7 +207,7 @@ def _symmetric(flow: LinearFlock, k: FloatArray, d: FloatArray, factor: float) -
 
 
 def _modal(k: FloatArray, d: FloatArray, factor: float) -> list[ModePeriod]:
-    """Return the margin of each mode in closed form, for K and D with common modes."""
+    """Return the sampling margin of each mode in closed form, for K and D with common modes."""
     magnitudes = [float(np.abs(x).max()) or 1.0 for x in (k, d)]
     shapes = np.linalg.eigh(k / magnitudes[0] + sqrt(2.0) * d / magnitudes[1])[1]
     rows = []
@@ -286,7 +286,7 @@ def _first_to_grow(
 
 
 def _steps(problem: SecondOrder, before: list[FloatArray], factor: float) -> Steps:
-    """Return the steps of a map off the zero modes, in (pace q, (q⁺ − q)/h); `before`: immediate entries."""
+    """Return the step equation of a map off the zero modes; `before` holds the immediate entries."""
     quotient, dimension = problem.quotient, problem.q.size
     low, zero = quotient.basis[dimension:], np.zeros((len(quotient.A),) * 2)
     stiffness = problem.stiffness.toarray()

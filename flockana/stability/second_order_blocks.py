@@ -55,7 +55,7 @@ class Blocks(ShortRepr):
         return reduced(self.stiffness, self.damping, identity, identity)
 
     def quotient(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """State and input matrices without free rigid motions, and the bases N of positions, V of velocities.
+        """State and input matrices without free rigid motions, and bases of positions and velocities.
 
         The state is (Nᵀx, Vᵀx'). (ρ, 0) with K ρ = 0 is invariant, and what drifts is so with its velocity: dividing
         them out is exact. What remains knows every shape, but neither the orientation nor, under Algorithm 1, the
@@ -68,7 +68,7 @@ class Blocks(ShortRepr):
 
 
 def reduced(stiffness: FloatArray, damping: FloatArray, positions: FloatArray, velocities: FloatArray) -> FloatArray:
-    """Return A of x'' = −K x − D x' in bases N of positions and V of velocities."""
+    """Return the state matrix of x'' = −K x − D x' in given bases of positions and velocities."""
     top = np.hstack([np.zeros((positions.shape[1],) * 2), positions.T @ velocities])
     return np.vstack([top, -velocities.T @ np.hstack([stiffness @ positions, damping @ velocities])])
 
@@ -102,7 +102,7 @@ def is_pairs_and_pull(law: Any) -> bool:
 
 
 def ensure_pairs_and_pull(law: Any) -> None:
-    """Raise unless a law has only pair terms and a linear pull."""
+    """Raise unless a law has only pair terms and at most a linear pull to a γ-agent."""
     if not is_pairs_and_pull(law):
         raise ArgumentError(
             f"expected Algorithm1 or Algorithm2, pairs and at most a linear pull: got {type(law).__name__}"

@@ -21,17 +21,17 @@ if TYPE_CHECKING:
 
 
 def labels(name: str, n: int, m: int) -> list[str]:
-    """Return the names of a quantity of n agents by component, in the order of ``q.ravel()``."""
+    """Return the names of a vector quantity of n agents, such as q0_x, in the order of ``q.ravel()``."""
     return [f"{name}{i}_{axis}" for i in range(n) for axis in "xyz"[:m]]
 
 
 def axes_of(name: str, m: int) -> list[str]:
-    """Return the names of the components of one vector."""
+    """Return the names of the components of one vector, such as q_x and q_y."""
     return [f"{name}_{axis}" for axis in "xyz"[:m]]
 
 
 def _target_inputs(flock: Any) -> tuple[FloatArray, list[str]]:
-    """Return the columns of ∂u/∂(q_r, p_r) and their names; none without a γ-agent."""
+    """Return the input columns for position and velocity of the γ-agent, and their names; none without it."""
     size, m, law = flock.q.size, flock.q.shape[1], flock.law
     while isinstance(law, WrappingLaw):
         law = law.law
@@ -53,7 +53,7 @@ def _system(
     names: tuple[list[str], list[str], list[str]],
     title: str,
 ) -> control.StateSpace:
-    """Return x'' = −K x − D x' + B u, y = C x, as a first-order system."""
+    """Return the state-space system of x'' = −K x − D x' + B u, y = C x."""
     import control
 
     stiffness, damping = blocks

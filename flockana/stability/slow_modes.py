@@ -104,7 +104,7 @@ def _of_components(problem: SecondOrder, count: int) -> tuple[Mode, ...]:
 
 
 def _complete_to(problem: SecondOrder, rates: list[float], radius: float, count: int) -> float:
-    """Return the largest rate up to which every mode has |λ| <= radius: 0 if none, NaN if unknown."""
+    """Return the largest decay rate up to which every mode has |λ| <= radius: 0 if none, NaN if unknown."""
     # Of the bounds K < a + b D one is looked for that serves the rate that matters, number `count`, or else the
     # smallest; how far it goes beyond is found by bisection.
     if not problem.symmetric:
@@ -129,7 +129,7 @@ def _complete_to(problem: SecondOrder, rates: list[float], radius: float, count:
 
 
 def _dominates(problem: SecondOrder, a: float, b: float) -> bool:
-    """Return whether K < a + b D, by the pivots of a symmetric elimination."""
+    """Return whether the stiffness K < a + b D as a matrix inequality, by symmetric elimination."""
     from scipy.sparse import eye_array
 
     gap = a * eye_array(problem.q.size) + b * problem.damping - problem.stiffness
@@ -141,7 +141,7 @@ def _dominates(problem: SecondOrder, a: float, b: float) -> bool:
 
 
 def _nearest_zero(problem: SecondOrder, count: int) -> tuple[Any, Any, float]:
-    """Return eigenvalues and displacements nearest to zero off the invariant subspace, with their radius."""
+    """Return eigenvalues nearest to 0 off the invariant subspace, displacements, and the radius they fill."""
     from scipy.sparse import csc_array, eye_array
     from scipy.sparse.linalg import ArpackError, LinearOperator, eigs, splu
 
@@ -156,7 +156,7 @@ def _nearest_zero(problem: SecondOrder, count: int) -> tuple[Any, Any, float]:
         return z - right @ np.linalg.solve(gram, left.T @ z) if right.shape[1] else z
 
     def inverse(z: FloatArray) -> FloatArray:
-        """Return (A − shift)⁻¹ z by one solve of half the size."""
+        """Return (A − shift)⁻¹ z of the flock's state matrix A by one solve of half its size."""
         z = off(z.ravel())
         q, p = z[:size], z[size:]
         dq = solve(-p - damping @ q)

@@ -28,7 +28,7 @@ MEASURES = AT_LEAST + AT_MOST
 
 @dataclass(frozen=True)
 class Specifications:
-    """Requirements on a flock; None for no requirement.
+    """Performance requirements on a flock; None for a quantity without requirement.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class Specifications:
 
     @property
     def asked(self) -> tuple[str, ...]:
-        """Names of the required quantities."""
+        """Names of the quantities for which a specification is given."""
         return tuple(field.name for field in fields(self) if getattr(self, field.name) is not None)
 
 

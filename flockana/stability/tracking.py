@@ -22,7 +22,7 @@ _WHOLE = 1e-9  # relative: a run that is as long as a period but for rounding is
 
 
 def _amplitude(t: FloatArray, x: FloatArray, omega: float) -> tuple[ComplexArray, float]:
-    """Return the complex amplitude at ω and its error, by least squares on each coordinate of x."""
+    """Return the complex amplitude of a series at frequency ω and its error, by least squares."""
     # The error is infinite where there are hardly more samples than unknowns, or where they cannot tell these apart.
     centred_time = (t - t.mean()) / max(float(np.ptp(t)), float(np.finfo(np.float64).tiny))
     basis = np.column_stack([np.cos(omega * t), np.sin(omega * t), np.ones_like(t), centred_time])
@@ -56,7 +56,7 @@ def whole_period(run: Trajectory, path: SineTarget | CircleTarget) -> bool:
 
 
 def _transient(run: Trajectory, t: FloatArray) -> FloatArray:
-    """Return the remaining transient at given times in closed form; for a map, of its flow."""
+    """Return the remaining transient of the centre of mass at given times; for a map, that of its flow."""
     # Without a pull the place that the centre ends at is arbitrary, and no part of the fit.
     moving, gains = motion(run.law.target), run.law.gains
     start, position, speed = float(run.t[0]), run.q[0].mean(axis=0), run.p[0].mean(axis=0)
@@ -102,7 +102,7 @@ def response_ratio(run: Trajectory) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Quantity:
-    """Quantity with predicted and measured value.
+    """Quantity with its predicted and its measured value, in a comparison with theory.
 
     Parameters
     ----------
@@ -136,11 +136,11 @@ class Tracking:
     quantities: tuple[Quantity, ...]
 
     def quantity(self, name: str) -> Quantity:
-        """Return the quantity with a given beginning of its name."""
+        """Return the compared quantity whose name begins with a given text."""
         return next(item for item in self.quantities if item.name.startswith(name))
 
     def __str__(self) -> str:
-        """Return a line for each quantity: name, predicted, measured."""
+        """Return the comparison as text, a line for each quantity: name, predicted, measured."""
         width = max((len(item.name) for item in self.quantities), default=0)
         return "\n".join(
             f"{item.name:<{width}}  predicted {item.predicted:10.6g}  measured {item.measured:10.6g}"
@@ -202,7 +202,7 @@ def _ratio(run: Trajectory, centre: CentreOfMass, moving: Motion) -> list[Quanti
 
 
 def _swing(run: Trajectory, centre: CentreOfMass) -> list[Quantity]:
-    """Return turning points along the line from the start to the target, and the time between two."""
+    """Return the compared period and first turning point of the centre of mass; empty without two turns."""
     from scipy.interpolate import BPoly, PPoly
 
     t, *states, _ = run.path  # its own steps too: samples of one's own choice may miss a turn

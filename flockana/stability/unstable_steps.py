@@ -28,7 +28,7 @@ _WITHIN = 0.999  # of an interval that is certified
 
 
 class Steps(NamedTuple):
-    """Step equation (1 + h e₁ + h² e₂) x⁺ = (1 + h f₁ + h² f₂) x off the neutral motions."""
+    """Step equation E(h) x⁺ = F(h) x of a map off the neutral motions, with E and F quadratic in h."""
 
     e1: FloatArray
     e2: FloatArray
@@ -36,16 +36,16 @@ class Steps(NamedTuple):
     f2: FloatArray
 
     def sides(self, h: float) -> tuple[FloatArray, FloatArray]:
-        """Return E and F at a step."""
+        """Return the matrices E and F of the step equation E(h) x⁺ = F(h) x at a step h."""
         identity = np.eye(len(self.f1))
         return identity + h * (self.e1 + h * self.e2), identity + h * (self.f1 + h * self.f2)
 
     def multipliers(self, h: float) -> FloatArray:
-        """Return the eigenvalues of P(h)."""
+        """Return the multipliers of the step map P(h): its eigenvalues at a step h."""
         return np.linalg.eigvals(np.linalg.solve(*self.sides(h)))
 
     def growth(self, h: float) -> float:
-        """Return the largest |z| − 1 at a step."""
+        """Return the largest modulus of the multipliers at a step h, minus 1."""
         return float(np.abs(self.multipliers(h)).max(initial=0.0)) - 1.0
 
 
@@ -57,7 +57,7 @@ class Growth(NamedTuple):
 
 
 def first_growth(steps: Steps, rate: float, stable_below: float = 0.0) -> Growth:
-    """Return the first step at which a map with a stable flow grows.
+    """Return the first step h at which the map of a stable flow grows, with its certified lower bound.
 
     `rate` is the size of the flow; steps up to `stable_below` are known to be stable.
     """
@@ -69,7 +69,7 @@ def first_growth(steps: Steps, rate: float, stable_below: float = 0.0) -> Growth
 
 
 def _by_pairs(steps: Steps, rate: float) -> Growth:
-    """Return the first growth from the steps at which two multipliers have product 1."""
+    """Return the first growing step, from the steps at which two multipliers have product 1."""
     e1, f1 = steps.e1 / rate, steps.f1 / rate
     e2, f2 = steps.e2 / rate**2, steps.f2 / rate**2
     identity = np.eye(len(f1))
@@ -93,7 +93,7 @@ def _by_pairs(steps: Steps, rate: float) -> Growth:
 
 
 def _resolved(steps: Steps, period: float, width: float) -> bool:
-    """Return whether a map is stable a share `width` below a period and unstable as far above it, beyond rounding."""
+    """Return whether a map is stable just below a period and unstable just above it, beyond rounding."""
     return min(side * steps.growth(period * (1.0 + side * width)) for side in (-1.0, 1.0)) > 10.0 * _ROUNDING
 
 
@@ -107,7 +107,7 @@ def _on_symmetric(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def _least_roots(parts: list[FloatArray]) -> list[float]:
-    """Return the rising positive roots x of det Σ x^k parts_k, with invertible parts_0."""
+    """Return the positive roots x of det Σ x^k A_k = 0 in rising order, with invertible A_0."""
     dimension, degree = len(parts[0]), len(parts) - 1
     companion = np.zeros((degree * dimension, degree * dimension))
     companion[dimension:, :-dimension] = np.eye((degree - 1) * dimension)
@@ -118,14 +118,14 @@ def _least_roots(parts: list[FloatArray]) -> list[float]:
 
 
 def _refined(steps: Steps, stable: float, growing: float) -> float:
-    """Return the step at which growth begins, between a stable and a growing one."""
+    """Return the step at which growth begins, located between a stable and a growing step."""
     from scipy.optimize import brentq
 
     return float(brentq(steps.growth, stable, growing, xtol=1e-14 * growing, rtol=1e-12))
 
 
 def _by_intervals(steps: Steps, rate: float, stable_below: float) -> Growth:
-    """Return the first growth from consecutive step intervals certified by Lyapunov functions."""
+    """Return the first growing step, from consecutive step intervals certified by Lyapunov functions."""
     here = _WITHIN * stable_below
     for _ in range(_INTERVALS):
         e, f = steps.sides(here)
@@ -145,7 +145,7 @@ def _by_intervals(steps: Steps, rate: float, stable_below: float) -> Growth:
 
 
 def _falls(steps: Steps, x: FloatArray, h: float, unit: float) -> list[FloatArray]:
-    """Return the coefficients of W(h + unit s) by powers of s, divided by s at h = 0."""
+    """Return the coefficients of the Lyapunov decrease W(h + unit s) by powers of s, over s at h = 0."""
     powers = []
     for first_block, second_block in ((steps.e1, steps.e2), (steps.f1, steps.f2)):
         at = np.eye(len(x)) + h * (first_block + h * second_block)

@@ -17,14 +17,14 @@ _LOOPS = (Delayed, Sampled, Measured)
 
 
 class _Heard(NamedTuple):
-    """Delays of hearing neighbours, common or for each pair, and whether own states are delayed too."""
+    """Delays with which neighbours are heard, common or per pair, and whether own states are delayed too."""
 
     delay: Any
     both: bool
 
 
 def instant_law(law: Law) -> Law:
-    """Return the undelayed law with the same rest: without delays, holds, noise and losses."""
+    """Return a law without its delays, holds, noise and losses, which has the same rest states."""
     if not isinstance(law, Wrapper):
         return law
     inner_law = instant_law(law.law)
@@ -66,7 +66,7 @@ def hold_of(law: Law) -> Sampled | None:
 
 
 def is_late(law: Law) -> bool:
-    """Return whether a positive delay is among the wrappers of a law."""
+    """Return whether a wrapped law has a positive delay."""
     wrappers = law.wrappers if isinstance(law, Wrapper) else ()
     return any(isinstance(wrapper, Delayed) and wrapper.memory > 0.0 for wrapper in wrappers)
 
@@ -133,7 +133,7 @@ def _pair_terms(core: Law, state: State) -> list[FloatArray]:
 
 
 def _ensure_at_rest(p: FloatArray, heard: _Heard) -> None:
-    """Raise if moving agents hear delayed positions, which form another configuration."""
+    """Raise if agents move while they hear delayed positions, as that is no rest of the law."""
     if np.any(p != 0.0) and np.any(np.asarray(heard.delay) > 0.0):
         raise ArgumentError(
             "agents that move hear where their neighbours were, which is no rest of the law: expected p = 0, or "

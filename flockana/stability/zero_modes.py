@@ -39,7 +39,7 @@ class Split(NamedTuple):
 
     @property
     def exact(self) -> bool:
-        """Return whether centre and shape are decoupled."""
+        """Return whether centre of mass and shape are decoupled within a tolerance."""
         return self.leak <= _SPLIT
 
 
@@ -116,7 +116,7 @@ def joined_kernel(stiffness: Any, net: StrongComponents, parts: list[Kernel], ze
 
 
 def _continued(stiffness: Any, net: StrongComponents, kernels: Any, order: Any, zero: float) -> FloatArray:
-    """Return a kernel built component by component, each following heard components where possible."""
+    """Return a basis of a stiffness kernel, built component by component of the net."""
     basis = np.zeros((stiffness.shape[0], 0))
     for k in order:
         rows, (free, left_kernel) = net.indices[k], kernels[k]
@@ -159,7 +159,7 @@ class Quotient(NamedTuple):
 
 
 def complement(basis: Any) -> Any:
-    """Return an orthonormal basis of the orthogonal complement."""
+    """Return an orthonormal basis of the orthogonal complement of the columns of a matrix."""
     if basis.shape[1] == 0:
         return np.eye(basis.shape[0])
     return np.linalg.svd(basis, full_matrices=True)[0][:, basis.shape[1] :]

@@ -37,7 +37,7 @@ _ONE = sp.Integer(1)
 
 
 def _over_obstacles(summand: sp.Expr) -> sp.Expr:
-    """Return the sum over all agents and obstacles."""
+    """Return the sum of an expression over all agents and obstacles."""
     return sum_over(summand, (K_, 1, COUNT), (I_, 1, N))
 
 
@@ -49,7 +49,7 @@ def gamma_force(
 
 
 def _agent_rates(m: int, gains: GainSymbols, moving: bool) -> tuple[sp.Expr, sp.Expr]:
-    """Return the terms of dH/dt from one agent and the gamma-agent, derived and claimed, in Q and P."""
+    """Return the terms of dH/dt from one agent and the gamma-agent, as derived and as claimed."""
     q_i, p_i, q_r, p_r, speed = (vector(name, m) for name in ("q_i", "p_i", "q_r", "p_r", "s"))  # s: the true dq_r/dt
     energy = gains.c1_gamma * sigma_norm(q_i - q_r, eps=_ONE) + HALF * p_i.dot(p_i)
     force = gamma_force(q_i, p_i, q_r, p_r, gains=gains)

@@ -12,7 +12,7 @@ _WHOLE = 8  # powers up to it are products
 
 
 class Constants:
-    """Constant subexpressions, numbered among the parameters."""
+    """Table of constant subexpressions that become numbered parameters of compiled code."""
 
     def __init__(self, variables: Iterable[sp.Symbol], first: int) -> None:
         self.variables, self.first = frozenset(variables), first
@@ -21,7 +21,7 @@ class Constants:
     values = property(lambda self: list(self.places))  # of the constants, in the order of their places
 
     def extract_constants(self, expression: sp.Expr) -> sp.Expr:
-        """Return an expression with symbols for its constants."""
+        """Return an expression with its constant subexpressions replaced by parameter symbols."""
         if not expression.free_symbols & self.variables:
             return self._symbol_for(expression)
         if isinstance(expression, sp.Add | sp.Mul):
@@ -42,7 +42,7 @@ class Constants:
 
 
 class FloatCode(PythonCodePrinter):
-    """Code printer with the kernels' scalar functions, powers as products and roots."""
+    """Printer of sympy expressions as code in floating point, with powers as products and roots."""
 
     def _print_Pow(self, power: sp.Expr, rational: bool = False) -> str:  # noqa: N802  # sympy's name
         base, exponent = power.as_base_exp()
@@ -91,7 +91,7 @@ class FloatCode(PythonCodePrinter):
 
 
 def function_text(name: str, arguments: str, before: list[str], expressions: list[list[sp.Expr]], after: str) -> str:
-    """Return the text of a function of several results, piecewise by expression."""
+    """Return the source text of a function of several results, piecewise by expression."""
     printer = FloatCode()
     expression_list = [item for row in expressions for item in row]
     shared_terms, reduced_expressions = sp.cse(expression_list, symbols=sp.numbered_symbols("x"), order="none")

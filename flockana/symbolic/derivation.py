@@ -7,7 +7,7 @@ import sympy as sp
 
 @dataclass(frozen=True)
 class Step:
-    """One line of a derivation.
+    """One step of a derivation: text, equation and condition.
 
     Parameters
     ----------
@@ -30,13 +30,13 @@ class Step:
     condition: sp.Basic = sp.true
 
     def latex(self) -> str:
-        """Return the step as two rows of an ``aligned`` environment."""
+        """Return the step of a derivation as two rows of a LaTeX ``aligned`` environment."""
         condition = "" if self.condition == sp.true else rf" \qquad \text{{if }} {sp.latex(self.condition)}"
         return f"& \\text{{{self.text}}} \\\\\n& \\quad {sp.latex(self.equation)}{condition}"
 
 
 def latex_steps(title: str, steps: tuple[Step, ...]) -> str:
-    r"""Return a titled sequence of steps as one ``aligned`` environment."""
+    r"""Return a titled sequence of derivation steps as one LaTeX ``aligned`` environment."""
     rows = [rf"& \textbf{{{title}}}", *(step.latex() for step in steps)]
     return "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"
 
@@ -48,7 +48,7 @@ class Printed:
     steps: tuple[Step, ...]
 
     def latex(self) -> str:
-        """Return the steps as LaTeX."""
+        """Return the steps of a derivation as LaTeX."""
         return latex_steps(self.title, self.steps)
 
     def _repr_latex_(self) -> str:
@@ -81,5 +81,5 @@ class Derivation(Printed):
 
     @property
     def holds(self) -> bool:
-        """Return whether every computed residual vanishes identically."""
+        """Return whether every computed residual of the derivation vanishes identically."""
         return all(residual == 0 for residual in self.residuals)

@@ -21,7 +21,7 @@ from flockana.symbolic.sums_over_pairs import I_, J_, P, Q, V, X, Z, indexed, ov
 
 @dataclass(frozen=True)
 class EnergyIdentity(Printed):
-    """Energy, its derived rate along the flow, the claimed closed form, and their difference.
+    """Energy, its derived rate along the flow, the claimed closed form of the rate, and their difference.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class EnergyIdentity(Printed):
 
     @property
     def holds(self) -> bool:
-        """Return whether the residual vanishes identically."""
+        """Return whether the derived energy rate equals the claimed one identically."""
         return bool(self.residual == 0)
 
     def latex(self) -> str:  # noqa: D102
@@ -71,24 +71,24 @@ class GenericPair:
         self.p = vector(f"{velocity}_i", m), vector(f"{velocity}_j", m)
 
     def forces(self, gains: GainSymbols = GAINS) -> tuple[sp.Matrix, sp.Matrix]:
-        """Return the forces of j on i and of i on j, from one formula."""
+        """Return the pair forces of agent j on i and of i on j, from one formula."""
         (q_i, q_j), (p_i, p_j) = self.q, self.p
         return pair_force(q_i, p_i, q_j, p_j, gains=gains), pair_force(q_j, p_j, q_i, p_i, gains=gains)
 
     def along(self, energy: sp.Expr, gains: GainSymbols = GAINS) -> sp.Expr:
-        """Return the rate of a pair's energy under the mutual forces, simplified."""
+        """Return the rate of a pair's energy under the forces between its two agents, simplified."""
         components = [[*first, *second_symbols] for first, second_symbols in (self.q, self.p, self.forces(gains))]
         return self.tidy(along_flow(energy, *components))
 
     def energy_rates(
         self, gains: GainSymbols = GAINS, *, copies: sp.Expr = sp.S.One, factor: sp.Expr = HALF
     ) -> tuple[sp.Expr, sp.Expr]:
-        """Return the rates of copies * psi_alpha and of factor * (|p_i|^2 + |p_j|^2)."""
+        """Return the rates of copies times a pair's potential and of factor times (|p_i|^2 + |p_j|^2)."""
         kinetic = factor * sp.Add(*(p.dot(p) for p in self.p))
         return self.along(copies * pair_potential(*self.q, gains=gains), gains), self.along(kinetic, gains)
 
     def laplacian_form(self) -> sp.Expr:
-        """Return the pair's block of p^T L p: a_ij times [[1, -1], [-1, 1]] for every component."""
+        """Return the term of one pair in p^T L p: a_ij |p_j - p_i|^2."""
         stacked_velocities = sp.Matrix.vstack(*self.p)
         block = sp.kronecker_product(sp.Matrix([[1, -1], [-1, 1]]), sp.eye(self.m))
         return self.tidy(ADJACENCY(self.z) * (stacked_velocities.T * block * stacked_velocities)[0])
@@ -115,7 +115,7 @@ class GenericPair:
 
 
 def _pair_steps(pair: GenericPair, factor: sp.Expr, gains: GainSymbols) -> tuple[sp.Expr, sp.Expr, tuple[Step, ...]]:
-    """Return the pair's derived contribution to dH/dt, the claimed one, and the steps between."""
+    """Return the derived and the claimed contribution of a pair to dH/dt, and the steps between them."""
     potential, power = pair.energy_rates(gains, factor=factor)
     total = pair.tidy(potential + power)
     stated_rate = -gains.c2_alpha * pair.laplacian_form()

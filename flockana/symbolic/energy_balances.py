@@ -36,7 +36,7 @@ def _weight(i: int, j: int) -> sp.Expr:
 def _between_agents(
     q: list[sp.Matrix], p: list[sp.Matrix], weight: Callable[[int, int, sp.Expr], sp.Expr]
 ) -> tuple[list[sp.Matrix], list[sp.Matrix], sp.Expr, sp.Expr]:
-    """Return (potential forces, forces with consensus, potential, consensus power)."""
+    """Return potential forces, forces with consensus, potential and consensus power of three agents."""
     pulls, u, potential, power = [sp.zeros(*x.shape) for x in q], [sp.zeros(*x.shape) for x in q], sp.S.Zero, sp.S.Zero
     for i, j in combinations(range(_N), 2):
         displacement, velocity_difference = q[j] - q[i], p[j] - p[i]
@@ -119,7 +119,7 @@ def led_energy_identity(m: int = 2, *, feedforward: bool = True) -> Derivation:
 
 
 def copies_balance() -> Derivation:
-    """Derive the part of dH/dt from a pull to a copy: q'' = f - c1 (q - q_r) - c2 (q' - q_r'), by component.
+    """Derive the terms of dH/dt due to the pull of an agent to its own copy of the γ-agent.
 
     f is all else; what it does, p f, is counted where its energy is.
     """
@@ -137,7 +137,7 @@ def copies_balance() -> Derivation:
 
 
 def copies_part() -> Derivation:
-    """Derive the distance of a copy from the mean for f_r = -k q - b p, one equation for any number."""
+    """Derive the equation for the distance of one copy of a γ-agent from the mean of all copies."""
     copies = [sp.Function(f"q_{i}")(T) for i in range(3)]
     mean = sum(copies) / 3
     pulls = (K1 * (mean - q) + K2 * (mean - q).diff(T) for q in copies)

@@ -25,7 +25,7 @@ _PARTS = ((_J, 1, FRIENDS), (_J, FRIENDS + 1, FRIENDS + NEGATIVE))  # F+, then F
 
 
 def e1_identity(m: int = 2) -> EnergyIdentity:
-    """Derive dH/dt of the printed H: the residual -dV/dt - c2_alpha p^T L p has an indefinite first term.
+    """Derive dH/dt of the energy H as printed in the slides (erratum E1), with its indefinite residual.
 
     Examples
     --------
@@ -40,7 +40,7 @@ def e1_identity(m: int = 2) -> EnergyIdentity:
 
 @dataclass(frozen=True)
 class RisingEnergy:
-    """State at which the printed H rises while the true H falls.
+    """State at which the energy H as printed rises while the true H falls.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def with_pair_law(expression: sp.Expr, alpha: AlphaSymbols) -> sp.Expr:
 
 
 def e1_counterexample() -> RisingEnergy:
-    """Return two close separating agents on a line, for which the printed H rises.
+    """Return two close separating agents on a line, for which the energy H as printed in E1 rises.
 
     Examples
     --------

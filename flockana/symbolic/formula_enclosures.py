@@ -25,7 +25,7 @@ _T = sp.Symbol("t", real=True)
 
 @contextmanager
 def precision(bits: int, terms: int = 1) -> Iterator[None]:
-    """Set the precision of ball arithmetic, and the length of its series, inside the block."""
+    """Set the bits of ball arithmetic and the number of series terms within a with-block."""
     saved_precision = ctx.prec, ctx.cap
     ctx.prec, ctx.cap = bits, terms
     try:
@@ -35,18 +35,18 @@ def precision(bits: int, terms: int = 1) -> Iterator[None]:
 
 
 def rational(number: Any) -> fmpq:
-    """Return a rational number of sympy, or a Fraction, in Arb's form."""
+    """Return a rational number of sympy, or a Fraction, as a rational number of Arb."""
     fraction = Fraction(int(number.p), int(number.q)) if isinstance(number, sp.Rational) else Fraction(number)
     return fmpq(fraction.numerator, fraction.denominator)
 
 
 def interval(left: fmpq, right: fmpq) -> arb:
-    """Return the ball that covers an interval."""
+    """Return a ball that covers an interval given by its ends."""
     return arb(left).union(arb(right))
 
 
 class UndefinedError(ArithmeticError):
-    """Exception for an operation that is not analytic on an interval."""
+    """Exception for an operation that is not certainly analytic on an interval."""
 
 
 class Enclosed:
@@ -60,7 +60,7 @@ class Enclosed:
         self._add(sp.sympify(expression))
 
     def _add(self, node: sp.Expr) -> int:
-        """Return the index of a node, added after the nodes it depends on."""
+        """Return the index of an expression node, added to the formula's steps after its operands."""
         if node not in self._at:
             arguments = tuple(self._add(argument) for argument in _arguments(node))
             self._steps.append((_operation(node, self.variable), arguments, node, self.variable in node.free_symbols))
@@ -68,7 +68,7 @@ class Enclosed:
         return self._at[node]
 
     def series(self, x: arb) -> list[arb] | None:
-        """Return `ctx.cap` Taylor coefficients valid for every centre in a ball; None where not analytic."""
+        """Return Taylor coefficients of the formula valid for every centre in a ball; None where not analytic."""
         parts = self._run(x)
         return None if parts is None else _coefficients(parts[-1][0])
 
@@ -104,20 +104,20 @@ class Enclosed:
 
 
 def _coefficients(series: arb_series) -> list[arb]:
-    """Return all coefficients of a series, trailing zeros included."""
+    """Return all coefficients of a Taylor series, trailing zeros included."""
     coefficients = series.coeffs()[: ctx.cap]
     return [*coefficients, *([arb(0)] * (ctx.cap - len(coefficients)))]
 
 
 def _arguments(node: sp.Expr) -> tuple[sp.Expr, ...]:
-    """Return the operands of a node, without the exponent of a plain power."""
+    """Return the operands of an expression node, without the exponent of a rational power."""
     if node.is_Pow and node.exp.is_Rational:
         return (node.base,)
     return () if node.is_Atom else tuple(node.args)
 
 
 def _operation(node: sp.Expr, variable: sp.Symbol) -> Callable[..., Any]:
-    """Return a node's operation as a function of the ball and of its operands' series."""
+    """Return the operation of an expression node as a function of a ball and of the operands' series."""
     if node == variable:
         return lambda x: arb_series([x, 1])
     if isinstance(node, sp.Float):
@@ -144,12 +144,12 @@ def _operation(node: sp.Expr, variable: sp.Symbol) -> Callable[..., Any]:
 
 
 def _with_value(series: Any, value: arb) -> Any:
-    """Return a series with a new enclosure of its value."""
+    """Return a Taylor series with its constant term replaced by a new enclosure."""
     return arb_series([value, *_coefficients(series)[1:]])
 
 
 def _where(holds: Any, series: Any) -> Any:
-    """Return a series; raise unless an operation is certainly analytic there."""
+    """Return a Taylor series unchanged; raise unless a condition for analyticity holds."""
     if not holds:
         raise UndefinedError
     return series
@@ -160,14 +160,14 @@ def _positive(series: Any) -> Any:
 
 
 def _power(base: Any, whole: int, root: int = 1, *, up: bool = True) -> Any:
-    """Return a plain power, or its inverse unless `up`: integer powers of any base, roots of a positive base."""
+    """Return a rational power of a Taylor series, or its reciprocal unless `up`."""
     of = base if root == 1 else _positive(base).sqrt() if root == 2 else (_positive(base).log() / root).exp()
     value = _with_value(_multiplied(of, whole), _power_range(of[0], whole)) if whole > 1 else of
     return value if up else 1 / _where(abs(value[0]) > 0, value)
 
 
 def _multiplied(base: Any, whole: int) -> Any:
-    """Return the product of equal factors."""
+    """Return a positive integer power of a ball or a Taylor series, by repeated squaring."""
     value = None
     while whole:
         if whole & 1:
@@ -178,7 +178,7 @@ def _multiplied(base: Any, whole: int) -> Any:
 
 
 def _power_range(base: arb, whole: int) -> arb:
-    """Return the range of an integer power, including 0 where the base changes sign."""
+    """Return the range of an integer power of a ball, including 0 where the base changes sign."""
     range_ends = _multiplied(base.lower(), whole).union(_multiplied(base.upper(), whole))
     if whole % 2 or base > 0 or base < 0:
         return range_ends
@@ -193,7 +193,7 @@ def _exp(x: Any) -> Any:
 
 
 def _integrated(value: arb, slope: Any, x: Any) -> Any:
-    """Return the series of a function from its value and the series of its derivative."""
+    """Return the Taylor series of a function from its value and the series of its derivative."""
     return (slope * x.derivative()).integral() + value if ctx.cap > 1 else arb_series([value])
 
 
@@ -207,7 +207,7 @@ def _tanh(x: Any) -> Any:
 
 
 def _cosine_range(x: arb) -> arb:
-    """Return the range of the cosine, with the maxima and minima between the ends."""
+    """Return the range of the cosine over a ball, with the maxima and minima between the ends."""
     turns = x / arb.pi()
     if x.is_exact() or not turns.rad() < 0.25:
         return x.cos()
@@ -219,7 +219,7 @@ def _cosine_range(x: arb) -> arb:
 
 
 def _inside(x: Any) -> Any:
-    """Return a series whose value is certainly within (−1, 1)."""
+    """Return a Taylor series unchanged; raise unless its value is certainly within (−1, 1)."""
     return _where(x[0] > -1 and x[0] < 1, x)
 
 
@@ -247,7 +247,7 @@ _FUNCTIONS: dict[Any, Callable[[Any], Any]] = {
 
 
 def _sign(node: sp.Expr, value: Any, signs: list[int]) -> int:
-    """Return the certain sign of a node, from its ball or from its operands."""
+    """Return the certain sign of an expression node, from its enclosure or from its operands' signs."""
     ball = value[0]
     if ball > 0:
         return POSITIVE
@@ -263,14 +263,14 @@ def _sign(node: sp.Expr, value: Any, signs: list[int]) -> int:
 
 
 class Germ(NamedTuple):
-    """Power t^power times a factor within a ball, for all t in (0, w]; analytic on that interval."""
+    """Leading behaviour of a function near 0: t^power times a factor within a ball, for all t in (0, w]."""
 
     power: Fraction
     factor: arb
 
 
 class _UnknownError(ArithmeticError):
-    """Exception for a formula whose leading behaviour is not known."""
+    """Exception for a formula whose leading behaviour near 0 is not known."""
 
 
 def germ(expression: sp.Expr, variable: sp.Symbol, width: fmpq) -> Germ | None:
@@ -317,7 +317,7 @@ class _GermVisitor:
         return Germ(power, sum((term.factor * self._until(term.power - power) for term in terms), arb(0)))
 
     def _until(self, power: Fraction) -> arb:
-        """Return the range of t^power, power ≥ 0."""
+        """Return the range of t^power for t in (0, w], power ≥ 0."""
         if power == 0:
             return arb(1)
         return arb(0).union((self.width.log() * arb(rational(power))).exp().upper())

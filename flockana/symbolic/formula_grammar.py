@@ -47,7 +47,7 @@ _RELATIONS: Mapping[type, type] = {ast.Lt: sp.Lt, ast.LtE: sp.Le, ast.Gt: sp.Gt,
 
 
 def read_formula(text: str, symbols: Mapping[str, sp.Expr], *, where: str = "the formula") -> sp.Expr:
-    """Return the sympy expression of a text, in the given names."""
+    """Return the sympy expression of a formula given as text, in given names of variables."""
     if not isinstance(text, str):
         raise ArgumentError(f"{where} = {text!r}: expected a sympy expression, or text")
     if len(text) > LENGTH:
@@ -81,7 +81,7 @@ def expression_size(value: sp.Basic, known: dict[sp.Basic, tuple[int, int, int]]
 
 
 def _with_pieces(value: sp.Expr, where: str) -> sp.Expr:
-    """Return an expression with absolute values, and roots of squares, written as two pieces."""
+    """Return an expression in which absolute values are written as piecewise expressions."""
     for inner in value.atoms(sp.Abs):
         _ensure_plain(inner.args[0], where)
     try:
@@ -91,7 +91,7 @@ def _with_pieces(value: sp.Expr, where: str) -> sp.Expr:
 
 
 def _ensure_plain(value: sp.Expr, where: str) -> None:
-    """Raise on a piecewise condition inside a condition, as its zeros are unknown."""
+    """Raise if the argument of a condition or of abs is itself piecewise."""
     if value.has(sp.Piecewise, sp.Abs):
         raise ArgumentError(
             f"{where}: a condition, or abs, of {_short(str(value))}, which has pieces itself; expected one that is "
@@ -100,12 +100,12 @@ def _ensure_plain(value: sp.Expr, where: str) -> None:
 
 
 def write_formula(expression: sp.Expr) -> str:
-    """Return text from which `read_formula` restores an expression exactly."""
+    """Return an expression as text from which `read_formula` restores it exactly."""
     return str(_Printer().doprint(expression))
 
 
 class _Printer(StrPrinter):
-    """Printer of sympy expressions that writes numbers without loss."""
+    """Printer of sympy expressions as text that keeps numbers exact."""
 
     def _print_Float(self, number: sp.Float) -> str:  # noqa: N802  # sympy's name
         return repr(float(number))
@@ -119,7 +119,7 @@ def _short(text: str) -> str:
 
 
 class _Reader:
-    """Visitor that builds a sympy expression from the syntax tree of a text."""
+    """Visitor that builds a sympy expression from the syntax tree of a formula's text."""
 
     def __init__(self, text: str, symbols: Mapping[str, sp.Expr], where: str) -> None:
         self.text, self.where = text, where
@@ -127,7 +127,7 @@ class _Reader:
         self._sizes: dict[sp.Basic, tuple[int, int, int]] = {}
 
     def expression(self, node: ast.AST, depth: int) -> Any:
-        """Return the expression of a node."""
+        """Return the sympy expression of a node of a formula's syntax tree."""
         if depth > DEPTH:
             raise ArgumentError(f"{self.where} is nested more than {DEPTH} deep: expected a simpler formula")
         if isinstance(node, ast.Constant):
@@ -194,7 +194,7 @@ class _Reader:
         return self._real(value, node)
 
     def _real(self, value: sp.Expr, node: ast.AST) -> sp.Expr:
-        """Return a value; raise if it is too large, complex, or beyond floating point."""
+        """Return an expression unchanged; raise if it is complex, infinite or too large."""
         self._ensure_small(value)
         is_unreal = value.has(sp.zoo, sp.nan, sp.oo, -sp.oo, sp.I)
         if is_unreal or (value.is_number and not self._size_of(value) < _GREATEST):
@@ -210,7 +210,7 @@ class _Reader:
             return inf
 
     def _ensure_small(self, value: sp.Expr) -> None:
-        """Raise on short texts with huge values: nested pieces, towers of powers, powers of powers."""
+        """Raise on an expression with too many nodes or nested exponentials, or of too high a degree."""
         nodes, power_height, degree = expression_size(value, self._sizes)
         towers = power_height, TOWER, "exponentials within each other"
         for count, most, part_name in ((nodes, NODES, "parts"), towers, (degree, DEGREE, "as its degree")):

@@ -29,7 +29,7 @@ PSI = with_derivative("psi_alpha", PHI)
 
 
 def vector(name: str, m: int) -> sp.Matrix:
-    """Return a column of m real symbols."""
+    """Return a column vector of m real symbols with a given name."""
     return sp.ImmutableMatrix([sp.Symbol(f"{name}{k}", real=True) for k in range(1, m + 1)])
 
 
@@ -54,7 +54,7 @@ def pair_potential(q_i: sp.Matrix, q_j: sp.Matrix, *, gains: GainSymbols = GAINS
 def pair_force(
     q_i: sp.Matrix, p_i: sp.Matrix, q_j: sp.Matrix, p_j: sp.Matrix, *, gains: GainSymbols = GAINS
 ) -> sp.Matrix:
-    """Return agent j's part of u_i: c1_alpha phi_alpha n_ij + c2_alpha a_ij (p_j - p_i).
+    """Return the force of agent j on agent i: c1_alpha phi_alpha n_ij + c2_alpha a_ij (p_j - p_i).
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def own_force(
 
 
 def along_flow(energy: sp.Expr, q: Sequence[sp.Symbol], p: Sequence[sp.Symbol], u: Sequence[sp.Expr]) -> sp.Expr:
-    """Return the chain rule: the rate of an energy(q, p) along q' = p, p' = u."""
+    """Return the time derivative of an energy(q, p) along q' = p, p' = u, by the chain rule."""
     return sp.Add(*(sp.diff(energy, qk) * pk + sp.diff(energy, pk) * uk for qk, pk, uk in zip(q, p, u, strict=True)))
 
 

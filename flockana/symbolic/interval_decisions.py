@@ -34,18 +34,18 @@ Bounds = tuple[float, float]
 
 
 def down(x: arb) -> float:
-    """Return a float that is not above a ball."""
+    """Return a float that is a lower bound of a ball of ball arithmetic."""
     value = float(x.lower())
     return value if arb(value) <= x.lower() else nextafter(value, -inf)
 
 
 def up(x: arb) -> float:
-    """Return a float that is not below a ball."""
+    """Return a float that is an upper bound of a ball of ball arithmetic."""
     return 0.0 - down(-x)
 
 
 def is_zero(expression: sp.Expr, numbers: dict[sp.Symbol, sp.Expr]) -> bool | None:
-    """Return whether a number is 0, by algebra or by its enclosure; None if undecided."""
+    """Return whether a symbolic number is 0, by algebra or by an enclosure; None if undecided."""
     exact = expression.xreplace(numbers)
     if expression == 0 or exact == 0:
         return True
@@ -57,7 +57,7 @@ def is_zero(expression: sp.Expr, numbers: dict[sp.Symbol, sp.Expr]) -> bool | No
 
 
 class Region(NamedTuple):
-    """Formula with numbers for its parameters, on an interval.
+    """Formula with numbers for its parameters, on an interval of its variable.
 
     `left` and `right` hold the exact points `ends` between them; `place` gives the distance for messages.
     """
@@ -72,16 +72,16 @@ class Region(NamedTuple):
 
     @property
     def exact(self) -> sp.Expr:
-        """Formula with its numbers inserted."""
+        """Formula with the numbers of its parameters inserted."""
         return self.expression.xreplace(self.numbers)
 
     def between(self, left: fmpq, right: fmpq) -> tuple[float, float]:
-        """Return the distances of the ends of an interval, for messages."""
+        """Return the distances between agents at the two ends of an interval, for messages."""
         return self.place(left), self.place(right)
 
     @property
     def enclosed(self) -> Enclosed:
-        """Formula as a function of balls."""
+        """Formula as a function in ball arithmetic."""
         return Enclosed(self.exact, self.variable)
 
 
@@ -118,7 +118,7 @@ def _float(x: fmpq) -> float:
 
 
 def _visible_faults(of: Enclosed, region: Region, at: fmpq, name: str, scales: tuple[float, float], kinks: str) -> Fact:
-    """Return faults visible in values and slopes near a point: a jump, pole, kink or missing value."""
+    """Return a formula's fault near a point: a jump, pole, kink or missing value, or that it is open."""
     region_width, position = region.right - region.left, region.place(at)
     near_step, far_step = region_width / 2**100, region_width / 2**50
     sides: list[list[list[arb] | None]] = []
@@ -160,7 +160,7 @@ def sign_on(region: Region, name: str) -> tuple[Fact, Fact]:
 
 
 def _at_end(region: Region, side: int) -> tuple[int, fmpq]:
-    """Return the sign of a formula near an end where it vanishes, and its validity width; else (0, 0)."""
+    """Return a formula's sign near an interval end where it vanishes, and that width; else (0, 0)."""
     derivative, region_width = region.expression, region.right - region.left
     end = region.ends[side]
     order = 0
@@ -212,7 +212,7 @@ def _sign_inside(region: Region, left: fmpq, right: fmpq, name: str) -> tuple[Fa
 
 
 def _sign_of(of: Enclosed, left: fmpq, right: fmpq) -> int:
-    """Return the certain sign on an interval, by its enclosure or by its ends where it is monotone."""
+    """Return the certain sign of a formula on an interval, by its enclosure or by its end values."""
     ball = interval(left, right)
     sign, series = of.sign(ball), of.series(ball)
     if sign == POSITIVE or series is None or series[1].contains(0):
@@ -224,7 +224,7 @@ def _sign_of(of: Enclosed, left: fmpq, right: fmpq) -> int:
 
 
 class Least(NamedTuple):
-    """Bounds of the least value, and the position of the upper one."""
+    """Bounds of a formula's least value, and the position that gives the upper bound."""
 
     low: float
     high: float
@@ -232,7 +232,7 @@ class Least(NamedTuple):
 
 
 def least_on(region: Region, scale: float) -> Least:
-    """Return an enclosure of the least value on an interval; −∞ as lower bound for undefined formulas."""
+    """Return bounds of a formula's least value on an interval; −∞ as lower bound where undefined."""
     enclosed_expression, number = region.enclosed, count(0, -1)  # of two that are as low the later first
     best, where, search_count = arb.pos_inf(), region.left, 0
     heap: list[tuple[float, int, fmpq, fmpq]] = []
@@ -260,7 +260,7 @@ def least_on(region: Region, scale: float) -> Least:
 
 
 def _lowest(of: Enclosed, left: fmpq, right: fmpq) -> tuple[arb, arb, fmpq]:
-    """Return a lower bound on an interval, a value in the interval, and its position."""
+    """Return a formula's lower bound on an interval, one of its values there, and that value's position."""
     midpoint = (left + right) / 2
     series, midpoint_series = of.series(interval(left, right)), of.series(arb(midpoint))
     lowest_value = arb.pos_inf() if midpoint_series is None else midpoint_series[0].upper()
@@ -302,7 +302,7 @@ def least_of_integral(regions: list[Region], anchor: fmpq, scale: float) -> tupl
 
 
 def _taylor_parts(region: Region, scale: float) -> list[tuple[arb, arb, arb]] | None:
-    """Return integral, range and width of intervals on which Taylor's formula is exact to rounding."""
+    """Return integrals, ranges and widths of subintervals on which Taylor's formula is exact to rounding."""
     of, parts = region.enclosed, []
     stack = [(region.left, region.right, 0)]
     while stack:

@@ -24,7 +24,7 @@ PHI_SLOPE, ADJACENCY_SLOPE, PHI_BETA_SLOPE, WEIGHT_SLOPE = (
 
 
 def _slopes(force: sp.Matrix, table: dict[Any, Any], variables: sp.Matrix, sigma: sp.Expr, z: sp.Symbol) -> sp.Matrix:
-    """Return the derivative of a force, one column per variable, in terms of named functions of σ."""
+    """Return the Jacobian of a force with respect to some variables, in terms of named functions of σ."""
     aware = {function: with_derivative(f"{function.__name__}*", slope) for function, slope in table.items()}
     for function, differentiable in aware.items():
         force = force.replace(function, differentiable)
@@ -35,7 +35,7 @@ def _slopes(force: sp.Matrix, table: dict[Any, Any], variables: sp.Matrix, sigma
 def _jacobian(
     name: str, steps: tuple[Step, ...], by_position: sp.Matrix, by_velocity: sp.Matrix, residuals: list[sp.Expr]
 ) -> Derivation:
-    """Return the derivation of (∂u_i/∂q, ∂u_i/∂p), side by side."""
+    """Return a derivation whose result is the Jacobian (∂u_i/∂q, ∂u_i/∂p), side by side."""
     result = sp.ImmutableMatrix(sp.Matrix.hstack(by_position, by_velocity))
     return Derivation(f"Jacobian of {name}", steps, result, tuple(residuals))
 
@@ -95,7 +95,7 @@ def derive_agent_jacobian(m: int = 2, *, gains: GainSymbols = GAINS, bounded: bo
 
 
 def turn(obstacle: GenericObstacle) -> sp.Matrix:
-    """Return d(p_hat)/dq at fixed p: the turning rate of the β-agent's velocity."""
+    """Return the derivative of the β-agent's velocity p_hat by the agent's position q, at fixed p."""
     # Zero at a wall; at a sphere, along e, −(μ/ρ) [⟨a, e⟩ Pp + ⟨a, p⟩ Pe + a ⟨Pe, p⟩] with a = x/ρ.
     m, x, p = obstacle.m, obstacle.x, obstacle.p
     if obstacle.kind == "wall":

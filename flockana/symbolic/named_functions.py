@@ -14,7 +14,7 @@ TINY = sp.Symbol("tiny", nonnegative=True)  # 1e-300 in compiled code, 0 in math
 
 
 class Named(sp.Function):
-    """Named function, called by its name in generated code."""
+    """Base class of named sympy functions that generated code calls by name."""
 
     composed: sp.Expr  # by other named functions, where the formula has some
     stable = property(lambda self: self.composed)
@@ -22,7 +22,7 @@ class Named(sp.Function):
     formula = property(lambda self: written(self.composed))  # as printed
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """Return the derivative by the first argument; the others are parameters."""
+        """Return the derivative of the function by its first argument; the others are parameters."""
         argument = sp.Dummy("at", real=True)
         composed_form = self.func(argument, *self.args[1:]).composed
         slope = sp.diff(composed_form, argument)
@@ -30,7 +30,7 @@ class Named(sp.Function):
 
 
 def written(expression: sp.Expr) -> sp.Expr:
-    """Return an expression with the printed formulas of its named functions."""
+    """Return an expression in which named functions are replaced by their explicit formulas."""
     return expression.replace(lambda node: isinstance(node, Named), lambda node: node.formula)
 
 
@@ -42,7 +42,7 @@ class SigmaNorm(Named):
 
 
 class Sigma1(Named):
-    """Function sigma_1 of a number; increasing."""
+    """Function sigma_1(z) = z/sqrt(1 + z^2) of a number; increasing."""
 
     composed = property(lambda self: sigma_1(self.args[0]))
 
@@ -76,7 +76,7 @@ class Bump(Named):
         return sp.Piecewise((1, self.args[0] < self.args[1]), *pieces)
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """Return the derivative, the continuous slope."""
+        """Return the derivative of the bump function rho_h, its continuous slope."""
         return BumpSlope(*self.args)
 
 
@@ -116,7 +116,7 @@ class Phi(Named):
 
 
 class PhiAbove(Phi):
-    """Numerator of phi."""
+    """Numerator of the uneven sigmoid phi, written as a quotient."""
 
     @property
     def stable(self) -> sp.Expr:  # noqa: D102
@@ -126,7 +126,7 @@ class PhiAbove(Phi):
 
 
 class PhiBelow(Phi):
-    """Denominator of phi."""
+    """Denominator of the uneven sigmoid phi, written as a quotient."""
 
     stable = property(lambda self: self._parts[1] * self._parts[2])
 
@@ -148,5 +148,5 @@ class PhiIntegral(Named):
         return HALF * (a + b) * (s / (root_at_s + root_at_zero)) ** 2 * (gap + 1) / root_at_zero
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
-        """Return the derivative phi."""
+        """Return the derivative of the integral of phi, which is phi."""
         return Phi(*self.args)

@@ -40,7 +40,7 @@ def sphere_beta(q: sp.Matrix, p: sp.Matrix, centre: sp.Matrix, radius: sp.Expr) 
 
 
 class GenericObstacle:
-    """Agent and obstacle of one kind, by components."""
+    """Generic agent and obstacle of one kind (wall or sphere), written by components."""
 
     distance = sp.Symbol("rho", positive=True)
     z = sp.Symbol("z_ik", nonnegative=True)
@@ -69,11 +69,11 @@ class GenericObstacle:
         return sp.factor(remainder) / denominator if remainder != 0 else sp.S.Zero
 
     def braking(self) -> sp.Expr:
-        """Return <p_i, p_hat - p_i>, by components."""
+        """Return <p_i, p_hat - p_i> of an agent with velocity p_i and its β-agent, by components."""
         return self.p.dot(self.rate - self.p)
 
     def force(self, gains: GainSymbols = GAINS) -> sp.Matrix:
-        """Return the obstacle's part of u_i: c1_beta phi_beta n_hat + c2_beta b (p_hat - p_i)."""
+        """Return the obstacle's force on agent i: c1_beta phi_beta n_hat + c2_beta b (p_hat - p_i)."""
         z = sigma_norm(self.gap)
         attraction = gains.c1_beta * PHI_BETA(z) * sigma_norm_gradient(self.gap)
         return attraction + gains.c2_beta * WEIGHT(z) * (self.rate - self.p)
@@ -119,7 +119,7 @@ class Braking:
 
     @property
     def holds(self) -> bool:
-        """Return whether the form is exact, and every term provably nonpositive outside the obstacle."""
+        """Return whether the braking form is exact, and every term provably nonpositive outside the obstacle."""
         return bool(self.residual == 0) and all(term.is_nonpositive is True for term in self.terms)
 
 

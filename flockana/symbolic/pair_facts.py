@@ -33,7 +33,7 @@ _PROOF = "every operation of the formula is analytic between the cuts, and both 
 
 
 def exact_numbers(numbers: Mapping[sp.Symbol, float], eps: float) -> dict[sp.Symbol, sp.Expr]:
-    """Return parameters as exact decimals, with the σ-norms of range and length."""
+    """Return the parameters of a pair law as exact decimals, with the σ-norms of range and length."""
     exact = {symbol: sp.Rational(repr(float(value))) for symbol, value in numbers.items()}
     if eps > 0.0:
         for name in ("r", "d"):
@@ -43,13 +43,13 @@ def exact_numbers(numbers: Mapping[sp.Symbol, float], eps: float) -> dict[sp.Sym
 
 
 def pair_facts(cut: PiecewiseFormula, eps: float, strength: float, tallest: float) -> PairFacts:
-    """Return the proved facts of a formula with its numbers."""
+    """Return the proved facts of a pair law given as formula with numbers for its parameters."""
     return _NumericFormula(cut, eps, strength, tallest).facts
 
 
 @dataclass(frozen=True, eq=False)
 class _NumericFormula:
-    """Formula with numbers, for proving facts."""
+    """Pair law formula with numbers for its parameters, for proving facts."""
 
     cut: PiecewiseFormula
     eps: float
@@ -58,7 +58,7 @@ class _NumericFormula:
 
     @property
     def facts(self) -> PairFacts:
-        """Facts on smoothness, sign and least values."""
+        """Facts on smoothness, sign and least values of a pair law."""
         weight, inside_fact = self._signs()
         minimum, contact_value = self._energies()
         region_minima = [least_on(region, self.tallest) for region in self._regions(self._weights)]
@@ -78,11 +78,11 @@ class _NumericFormula:
 
     @cached_property
     def _marks(self) -> list[sp.Expr]:
-        """Symbols of 0, the cuts and the range."""
+        """Expressions for 0, the joints between pieces of the formula, and the interaction range."""
         return [sp.Integer(0), *self.cut.exact_marks[1:-1], self._declared("r")]
 
     def _declared(self, name: str) -> sp.Symbol:
-        """Return the symbol of the range or length in the formula's distance variable."""
+        """Return the symbol of the range or desired distance, in the distance variable of the formula."""
         return sp.Symbol(f"{name}_z" if self._y == Z else name, positive=True)
 
     def _chosen(self, formula: sp.Expr) -> list[sp.Expr]:
@@ -97,12 +97,12 @@ class _NumericFormula:
         return self._chosen(self.cut.formula.adjacency)
 
     def place(self, at: fmpq | float) -> float:
-        """Return the Euclidean distance of a value of y."""
+        """Return the Euclidean distance that belongs to a value y of the formula's variable."""
         y = float(arb(at))
         return sqrt(max(y, 0.0) * (2.0 + self.eps * y)) if self.eps else y
 
     def _point(self, mark: sp.Expr, side: int) -> fmpq:
-        """Return the rational value of a mark, rounded outwards."""
+        """Return a rational number that bounds an interval end given as an expression, rounded outwards."""
         exact = mark.xreplace(self._numbers)
         if isinstance(exact, sp.Rational):
             return rational(exact)
@@ -112,7 +112,7 @@ class _NumericFormula:
         return fmpq(int(end[0])) * fmpq(2) ** int(end[1])
 
     def _regions(self, formulas: list[sp.Expr], *, split: bool = True) -> Iterator[Region]:
-        """Yield regions of each formula between marks, also split at the desired distance."""
+        """Yield formulas with their intervals between joints, also split at the desired distance."""
         length = self._declared("d")
         for formula, (left, right) in zip(formulas, pairwise(self._marks), strict=True):
             inside = self._point(left, 1) < self._point(length, 0) and self._point(length, 1) < self._point(right, 0)
@@ -120,7 +120,7 @@ class _NumericFormula:
                 yield Region(formula, self._y, self._numbers, self._point(a, 0), self._point(b, 1), (a, b), self.place)
 
     def _inner(self) -> Iterator[Fact]:
-        """Yield smoothness faults between the marks."""
+        """Yield smoothness faults of a pair law inside the intervals between joints of its pieces."""
         forces, name = self.cut.formula.forces, "the force" if self.cut.formula.forces else "the potential"
         energy = self.strength * self.cut.end
         scales = (self.strength, self.strength / self.cut.end) if forces else (energy, self.strength)
@@ -142,7 +142,7 @@ class _NumericFormula:
                     yield Fact("unmet", text, fact.witness) if is_at_end else fact
 
     def _clear(self, region: Region) -> tuple[fmpq, bool]:
-        """Return the start of the checked range near contact, and whether the formula is analytic before."""
+        """Return the distance from which a formula is checked, and whether it is analytic below that."""
         for halving in _NEAR:
             width = region.right / 2**halving
             with precision(_BITS, 2):
@@ -153,7 +153,7 @@ class _NumericFormula:
         return region.right / 2 ** _NEAR[-1], False
 
     def _joints(self) -> Iterator[Fact]:
-        """Yield jumps at the joints of pieces."""
+        """Yield jumps of force, adjacency or potential at the joints between pieces of a pair law."""
         forces, energy = self.cut.formula.forces, self.strength * self.cut.end
         slopes = self._main_pieces if forces else [sp.diff(main_piece, self._y) for main_piece in self._main_pieces]
         rows = [(slopes, "the force", self.strength), (self._weights, "the adjacency", self.tallest)]
@@ -173,7 +173,7 @@ class _NumericFormula:
             yield from self._vanishes(what.subs(self._y, self._marks[-1]), scale, position, text)
 
     def _vanishes(self, number: sp.Expr, scale: float, place: float, fault: str) -> Iterator[Fact]:
-        """Yield a fault if a number is certainly nonzero, beyond rounding of the parameters."""
+        """Yield a fault unless a number is 0: unmet if nonzero beyond rounding, else assumed."""
         zero = is_zero(number, self._numbers)
         if zero:
             return
@@ -204,7 +204,7 @@ class _NumericFormula:
         return conjunction(weights, text), conjunction(inside_facts, f"{text} below the range")
 
     def _zeros(self, region: Region) -> Iterator[Fact]:
-        """Yield ends of a region, except contact and range, at which the adjacency may vanish."""
+        """Yield a fault for each interval end, except contact and range, where the adjacency may vanish."""
         for end, end_place in zip(region.ends, (region.left, region.right), strict=True):
             zero = is_zero(region.expression.subs(self._y, end), self._numbers)
             if end not in (self._marks[0], self._marks[-1]) and zero is not False:
@@ -229,7 +229,7 @@ class _NumericFormula:
         return Fact("assumed", "whether the adjacency is negative near contact is open", (0.0, 0.0)), region.left
 
     def _limit(self, formula: sp.Expr) -> arb | None:
-        """Return the value at contact of a formula analytic there."""
+        """Return the value of a formula at contact, or None if it is not analytic there."""
         enclosed_formula = Enclosed(formula, self._y)
         with precision(_BITS, 2):
             if enclosed_formula.series(interval(fmpq(0), fmpq(1) / 2**_CLOSE)) is None:
@@ -250,7 +250,7 @@ class _NumericFormula:
         return self._sharpened(regions, low, high), contact_value
 
     def _sharpened(self, regions: list[Region], low: float, high: float) -> tuple[float, float]:
-        """Return the bounds, exact if the least value is at a declared distance."""
+        """Return bounds of the least potential, exact if the least value is at a declared distance."""
         scale = self.strength * self.cut.end
         for value in (region.expression.subs(self._y, end) for region in regions for end in region.ends):
             with precision(_BITS):
@@ -263,7 +263,7 @@ class _NumericFormula:
         return low, high
 
     def _contact(self, region: Region) -> tuple[tuple[float, float], Least, fmpq]:
-        """Return the potential at contact, its least value nearby, and the start of the checked range."""
+        """Return a potential's bounds at contact, its least value nearby, and where checking starts."""
         formula, y = region.exact, self._y
         value = self._limit(formula)
         if value is not None:
@@ -295,7 +295,7 @@ class _NumericFormula:
         return (-inf, inf), Least(-inf, inf, 0.0), width
 
     def _close(self, formula: sp.Expr, slope: Germ) -> tuple[float, float] | None:
-        """Return the limit at contact, from a nearby value and a slope bound."""
+        """Return bounds of a potential's limit at contact, from a nearby value and a slope bound."""
         width = fmpq(1) / 2**_CLOSE
         with precision(4 * _CLOSE):
             end = Enclosed(formula, self._y).series(arb(width))
@@ -328,7 +328,7 @@ def _factored(formula: sp.Expr, y: sp.Symbol) -> sp.Expr:
 def slope_bounds(
     cut: PiecewiseFormula, eps: float, r: float, places: list[float], parts: int
 ) -> Iterator[tuple[float, float, float, float]]:
-    """Yield ends of parts of the range, also split at the cuts, with bounds of |dF/ds| and |da/ds|."""
+    """Yield subintervals of the range of a pair law, with bounds of |dF/ds| and |da/ds| on each."""
     numbers = exact_numbers(cut.numbers, eps)
     root = sp.sqrt(1 + EPS * S**2)
     norm, inner_slope = ((root - 1) / EPS, S / root) if eps else (S, sp.Integer(1))
@@ -345,7 +345,7 @@ def slope_bounds(
 
 
 def _most(of: Enclosed, order: int, left: fmpq, right: fmpq, depth: int) -> float:
-    """Return a bound of a Taylor coefficient on an interval."""
+    """Return an upper bound of the size of a formula's Taylor coefficient on an interval."""
     midpoint = (left + right) / 2
     with precision(_SLOPE_BITS, order + 1):
         series, at = of.series(interval(left, right)), of.series(arb(midpoint))

@@ -83,7 +83,7 @@ def _without_overflow(expression: sp.Expr) -> sp.Expr:
 
 @dataclass(frozen=True)
 class Piece:
-    """Weight, adjacency and slopes between two cuts, in y: s² or z, with the root √(1 + εs²).
+    """Weight, adjacency and their slopes between two joints of a pair law, in the variable y: s² or z.
 
     `potential` is None where the force was given.
     """
@@ -130,12 +130,12 @@ class PiecewiseFormula:
 
     @cached_property
     def marks(self) -> tuple[float, ...]:
-        """Rising distances 0, joints of pieces, and the end, as numbers."""
+        """Rising distances that bound the pieces of a formula: 0, the joints, and the end, as numbers."""
         return (0.0, *self._meetings, self.end)
 
     @cached_property
     def exact_marks(self) -> tuple[sp.Expr, ...]:
-        """Joints of pieces as expressions in the parameters; the end as a number."""
+        """Distances at the joints of pieces as expressions in the parameters, and the end as a number."""
         return (sp.Integer(0), *self._meetings.values(), sp.Float(self.end))
 
     @cached_property
@@ -162,7 +162,7 @@ class PiecewiseFormula:
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """Derived expressions between consecutive marks."""
+        """Expressions of weight, adjacency and slopes between consecutive joints of the formula."""
         formula, parts = self.formula, []
         for midpoint in (0.5 * (left + right) for left, right in pairwise(self.marks)):
             main_formula, weight = (self.chosen(part, midpoint) for part in (formula.main, formula.adjacency))
@@ -171,7 +171,7 @@ class PiecewiseFormula:
         return tuple(parts)
 
     def chosen(self, expression: sp.Expr, at: float) -> sp.Expr:
-        """Return an expression with the piece valid at a distance."""
+        """Return an expression in which each Piecewise is replaced by its branch valid at a distance."""
         if isinstance(expression, sp.Piecewise):
             for value, condition in expression.args:
                 if condition == sp.true or (condition != sp.false and self._holds(condition, at)):
@@ -186,7 +186,7 @@ class PiecewiseFormula:
         return bool(condition.func(sp.Rational(float(sign)), 0))
 
     def value(self, expression: sp.Expr) -> Any:
-        """Return the value of an expression in parameters alone, with `DIGITS` digits."""
+        """Return the numeric value of an expression in parameters alone, with `DIGITS` digits."""
         try:
             return self.function(expression)(mpmath.mpf(1))
         except (ZeroDivisionError, ValueError, OverflowError):
@@ -225,7 +225,7 @@ _LONGEST = 1e12  # argument of an exponential: beyond it the result has more dig
 
 
 def _bounded_exp(x: Any) -> Any:
-    """Return the exponential; 0 on underflow, NaN on overflow."""
+    """Return the exponential of a number, 0 on underflow; raise OverflowError on overflow."""
     if mpmath.mpf(x) > _LONGEST:
         raise OverflowError
     return mpmath.exp(x) if x > -_LONGEST else mpmath.mpf(0)
@@ -247,7 +247,7 @@ def _conditions(expression: sp.Basic) -> Iterator[Any]:
 
 
 def pair_derivation(formula: PairFormula) -> Derivation:
-    """Derive the consequences of a formula, with the residuals of all checkable equations."""
+    """Derive potential, force and weight from a pair law's formula, with residuals of checkable equations."""
     y = formula.distance
     psi, symbol_name = sp.Function("psi")(y), "s" if y == S else "z"
     derivative = formula.derivative

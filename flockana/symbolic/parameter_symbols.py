@@ -35,7 +35,7 @@ def _fill(bundle: Any, *derived: str, least: str = "a number > 0", sign: str = "
 
 
 def _derive(bundle: Any, **values: sp.Expr) -> None:
-    """Set the missing fields of a frozen bundle."""
+    """Set the missing fields of a frozen parameter object."""
     _require((1 - bundle.h).is_nonnegative, f"h = {bundle.h}: expected 0 < h <= 1")
     for name, value in values.items():
         number = getattr(bundle, name)
@@ -43,7 +43,7 @@ def _derive(bundle: Any, **values: sp.Expr) -> None:
 
 
 def _require(condition: bool | None, message: str) -> None:
-    """Raise on a condition that is certainly false; undecided ones are assumptions."""
+    """Raise if a condition on parameters is certainly false; undecided conditions are assumptions."""
     if condition is False:
         raise ArgumentError(message)
 

@@ -45,19 +45,19 @@ class _Potential:
 
     @property
     def edge(self) -> sp.Expr:
-        """End of the plateau."""
+        """End of the interval [0, edge] on which the bump function is 1."""
         return self.h * self.cutoff
 
     def tapered(self, z: sp.Expr) -> sp.Expr:
-        """Return the force on the taper."""
+        """Return the force on the taper of the bump function."""
         return taper(z / self.cutoff, h=self.h) * self.smooth(z)
 
     def integral(self, low: sp.Expr, high: sp.Expr) -> sp.Expr:
-        """Return the unevaluated integral over the taper, which has no elementary form."""
+        """Return the unevaluated integral of the force over the taper, which has no elementary form."""
         return sp.S.Zero if low == high else sp.Integral(self.tapered(_S), (_S, low, high))
 
     def pieces(self, zero_on_plateau: bool) -> tuple[Scalar, Scalar, Scalar]:
-        """Return the potential on the plateau, on the taper and beyond, for a zero on either."""
+        """Return the potential on the plateau, on the taper and beyond, with its zero on plateau or taper."""
         start = self.edge if zero_on_plateau else self.zero
         level = self.closed(self.edge) - self.closed(self.zero) if zero_on_plateau else sp.S.Zero
         return (
@@ -67,7 +67,7 @@ class _Potential:
         )
 
     def expression(self, z: sp.Expr) -> sp.Expr:
-        """Return all pieces in one Piecewise; numeric parameters select one case."""
+        """Return the potential as one Piecewise; numeric parameters select one case."""
         plateau_condition = sp.Ge(self.edge, self.zero)
         branches: list[tuple[sp.Expr, sp.Basic]] = []
         for is_plateau, case in ((True, plateau_condition), (False, sp.Not(plateau_condition))):
@@ -77,7 +77,7 @@ class _Potential:
         return sp.Piecewise(*branches)
 
     def residuals(self, zero_on_plateau: bool) -> tuple[sp.Expr, ...]:
-        """Return residuals that must be 0: derivative less force, jumps, and the value at the zero."""
+        """Return residuals of a potential that must be 0: derivative less force, jumps, value at its zero."""
         inner_piece, middle_piece, outer_piece = self.pieces(zero_on_plateau)
         zero_piece = inner_piece if zero_on_plateau else middle_piece
         differences = (
@@ -166,7 +166,7 @@ def psi_beta(z: sp.Expr, *, beta: BetaSymbols = BETA) -> sp.Expr:
 
 
 def _piece_steps(name: str, potential: _Potential, zero_on_plateau: bool, case: sp.Basic) -> tuple[Step, ...]:
-    """Return one step per piece, with its condition."""
+    """Return one derivation step for each piece of a potential, with its condition."""
     psi = sp.Function(name)(Z)
     edge, cutoff, pieces = potential.edge, potential.cutoff, potential.pieces(zero_on_plateau)
     rows = (
@@ -181,7 +181,7 @@ def _piece_steps(name: str, potential: _Potential, zero_on_plateau: bool, case: 
 
 
 def _phi_at_zero() -> tuple[sp.Expr, sp.Expr]:
-    """Return phi(0) with its root extracted, and its value for b = a + k, k >= 0."""
+    """Return the uneven sigmoid phi(0) with its root extracted, and its value for b = a + k, k >= 0."""
     root = ALPHA.c**2 + 1
     value = phi(sp.S.Zero).subs(root, sp.factor(root))
     return value, value.subs(ALPHA.b, ALPHA.a + sp.Symbol("k", nonnegative=True))

@@ -57,7 +57,7 @@ def sigma_norm_gradient(z: sp.Expr | sp.Matrix, *, eps: sp.Expr = EPS) -> sp.Exp
 
 @check_kinds
 def sigma_1(z: sp.Expr | sp.Matrix) -> sp.Expr | sp.Matrix:
-    """Return z/sqrt(1 + |z|^2).
+    """Return sigma_1(z) = z/sqrt(1 + |z|^2) of a scalar or vector.
 
     Parameters
     ----------

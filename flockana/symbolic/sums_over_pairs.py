@@ -85,7 +85,7 @@ def collective_potential(gains: GainSymbols = GAINS) -> sp.Expr:
 
 @check_kinds
 def half_square(base: sp.IndexedBase, m: sp.Expr = M) -> sp.Expr:
-    """Return half the sum of squares: K of velocities (velocity mismatch), J of positions (inertia).
+    """Return half the sum of squares of agents' vectors: velocity mismatch K, or inertia J of positions.
 
     Parameters
     ----------

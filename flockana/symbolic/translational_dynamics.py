@@ -15,7 +15,7 @@ SQUARE = sp.Symbol("w", nonnegative=True)  # ω²
 
 
 def natural_frequency(gains: GainSymbols = GAINS) -> sp.Expr:
-    """Return omega_n = sqrt(c1_gamma), in radians per time unit.
+    """Return the natural frequency omega_n = sqrt(c1_gamma) of the centre of mass, in radians per time unit.
 
     Examples
     --------
@@ -26,7 +26,7 @@ def natural_frequency(gains: GainSymbols = GAINS) -> sp.Expr:
 
 
 def damping_ratio(gains: GainSymbols = GAINS) -> sp.Expr:
-    """Return zeta = c2_gamma/(2 sqrt(c1_gamma)).
+    """Return the damping ratio zeta = c2_gamma/(2 sqrt(c1_gamma)) of the centre of mass.
 
     Examples
     --------

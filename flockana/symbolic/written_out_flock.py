@@ -127,7 +127,7 @@ class ConcreteFlock(Printed):
 
     @cached_property
     def claimed(self) -> sp.Expr:
-        """Closed form of the rate: -c2_alpha p^T L p; for Algorithm 2, -c2_alpha v^T L v - c2_gamma |v|^2."""
+        """Closed form of the energy rate: -c2_alpha p^T L p; in Algorithm 2 with v, less c2_gamma |v|^2."""
         v = self.moving[1] if self.law == "algorithm2" else self.p
         stacked = sp.Matrix.vstack(*v)
         quadratic = (stacked.T * sp.kronecker_product(self.laplacian, sp.eye(self.m)) * stacked)[0]
@@ -136,7 +136,7 @@ class ConcreteFlock(Printed):
 
     @cached_property
     def residual(self) -> sp.Expr:
-        """Return rate - claimed, in roots sqrt(1 + eps |q_j - q_i|^2) of each pair: 0 for a theorem."""
+        """Return the energy rate less its claimed closed form: 0 for a theorem."""
         roots = {}
         for i, j in combinations(range(self.n), 2):
             squared_value = (1 + EPS * sigma_norm(self.q[j] - self.q[i])) ** 2
@@ -201,7 +201,7 @@ class NumericLaw:
     functions: tuple[Callable[..., Any], ...]
 
     def _evaluate(self, which: int, q: Any, p: Any) -> Any:
-        """Return one of the functions at a state, in high precision."""
+        """Return acceleration, energy or energy rate at a state, in high precision."""
         q, p = ensure_state(q, p)
         if q.shape != (self.flock.n, self.flock.m):
             raise ArgumentError(f"q has shape {q.shape}: expected {(self.flock.n, self.flock.m)}, as derived")
@@ -209,7 +209,7 @@ class NumericLaw:
             return self.functions[which](*(mpmath.mpf(x) for x in (*q.ravel().tolist(), *p.ravel().tolist())))
 
     def acceleration(self, q: npt.ArrayLike, p: npt.ArrayLike) -> FloatArray:
-        """Return u, shape (n, m)."""
+        """Return the inputs u of all agents at a state, shape (n, m)."""
         input_values = [float(u) for u in self._evaluate(0, q, p)]
         return np.array(input_values).reshape(self.flock.n, self.flock.m)
 
@@ -227,7 +227,7 @@ def _numbers(alpha: AlphaSymbols) -> list[sp.Expr]:
 
 
 def _compile(scalar: Callable[..., sp.Expr], numbers: list[sp.Expr]) -> Callable[[Any], Any]:
-    """Return a function of z with fixed parameters."""
+    """Return a scalar function of the sigma-distance z, compiled with fixed parameters."""
     function = sp.lambdify([Z, *_numbers(ALPHA_NAMED)], scalar(Z, alpha=ALPHA_NAMED), "mpmath")
     with mpmath.workdps(DIGITS):
         values = [mpmath.mpmathify(number.evalf(DIGITS)) for number in numbers]

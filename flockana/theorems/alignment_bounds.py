@@ -36,30 +36,30 @@ class AlignmentRate:
     stretch: float  # c: 2 as printed, √2 where it is sharp, 1 for the distance of two agents
 
     def __call__(self, s: float) -> float:
-        """Return φ(s)."""
+        """Return the decay rate φ(s) at position spread s."""
         return self.strength * float((1.0 + (self.stretch * s / self.weight.length) ** 2) ** -self.weight.decay)
 
     @property
     def _unit(self) -> float:
-        """Factor λℓ/c of integrals over w."""
+        """Factor λℓ/c of the integrals of φ after substitution by w."""
         return self.strength * self.weight.length / self.stretch
 
     def _w(self, s: float) -> float:
         return asinh(self.stretch * s / self.weight.length)
 
     def between(self, start: float, end: float) -> float:
-        """Return ∫φ from one number to another, of either sign."""
+        """Return the integral ∫φ of the decay rate between two position spreads."""
         return self._unit * self._over(self._w(start), self._w(end))
 
     def _over(self, start: float, end: float) -> float:
-        """Return ∫ (cosh w)^(1 − 2β) dw."""
+        """Return the integral of (cosh w)^(1 − 2β) between two values of w."""
         from scipy.integrate import quad
 
         power = 1.0 - 2.0 * self.weight.decay
         return quad(lambda w: cosh(w) ** power, start, end, epsabs=0.0, epsrel=1e-12, limit=200)[0]
 
     def beyond(self, start: float) -> float:
-        """Return ∫φ from a number to infinity; infinite for β <= ½."""
+        """Return the integral ∫φ from a position spread to infinity; infinite for β <= ½."""
         from scipy.special import beta, betainc
 
         power = self.weight.decay - 0.5
@@ -70,7 +70,7 @@ class AlignmentRate:
         return self._unit * (tail if start >= 0.0 else full_beta - tail)
 
     def reached(self, start: float, speed: float) -> float:
-        """Return the x_M at which ∫φ from `start` equals the speed; infinite without one."""
+        """Return the spread x_M at which ∫φ from `start` equals a velocity spread; infinite without one."""
         from scipy.optimize import brentq
 
         speed_ratio, low = speed / self._unit, self._w(start)
@@ -87,11 +87,11 @@ class AlignmentRate:
         return self.weight.length / self.stretch * float(np.sinh(w))
 
     def beyond_enclosed(self, start: Enclosure) -> Enclosure:
-        """Return `beyond` of an enclosed start."""
+        """Return an enclosure of ∫φ from an enclosed position spread to infinity."""
         return start.falling(np.vectorize(self.beyond, otypes=[float])).scaled_out(QUADRATURE)
 
     def reached_by(self, start: Enclosure, speed: Enclosure) -> Enclosure:
-        """Return `reached` of an enclosed start and speed, as an increasing function."""
+        """Return an enclosure of the spread x_M reached from an enclosed start with an enclosed speed."""
         ends = (self.reached(float(getattr(start, end)), float(getattr(speed, end))) for end in ("lo", "mid", "hi"))
         return Enclosure(*ends).scaled_out(QUADRATURE)
 
@@ -145,7 +145,7 @@ class Guarantee:
         )
 
     def _falls(self, needs: list[Hypothesis]) -> Claim:
-        """Return the claim that v falls at the guaranteed rate, at each sample at which v exceeds its error."""
+        """Return the claim that the velocity spread falls at the guaranteed rate, while it exceeds its error."""
         observation, v, name, rate = self.seen, self.v, self.names[1], self.bound.falling(np.vectorize(self.phi))
         count = observation.known_samples(v.lo > 0.0)
         if count < 2 or not rate.lo > 0.0:

@@ -86,7 +86,7 @@ def applicable_to(flock: Any) -> pd.DataFrame:
 
 
 def start_of(law: Any, q0: Any, p0: Any, t0: float) -> Observed:
-    """Return a start as an exact run of one sample."""
+    """Return an initial state of a law as an exact run of one sample."""
     if isinstance(law, VelocityLaw):
         u = law.acceleration(t0, q0)
     else:
@@ -98,7 +98,7 @@ def start_of(law: Any, q0: Any, p0: Any, t0: float) -> Observed:
 
 
 def _rows(item: Theorem, start: Observed, used: Tolerances) -> list[tuple[Any, ...]]:
-    """Return a row for each claim of a theorem."""
+    """Return a table row for each claim of a theorem, on its applicability to a start."""
     if wrappers_of(start.law) and not item.wrapped:
         return [_judge(item, claim) for claim in claims_on_another_law(item, start.law)[1]]
     if item.on_motion:

@@ -56,7 +56,7 @@ def final_basin(seen: Observed) -> basins.Basin:
 
 
 def _force(law: Algorithm1 | Algorithm2, q: FloatArray) -> float:
-    """Return ‖∇U(x)‖ over all coordinates, plus a bound of its rounding."""
+    """Return the norm ‖∇U‖ of the structural force over all coordinates, plus a bound of its rounding."""
     most_links = float(np.bincount(links(q, law.alpha.range).ravel(), minlength=1).max())
     pull = law.gains.c1_gamma * float(np.abs(q).max()) if isinstance(law, Algorithm2) else 0.0
     rounding = law.gains.c1_alpha * pair_force_error(paper_pair(law)) * (most_links + 1.0) + 16.0 * EPS * pull
@@ -71,7 +71,7 @@ def lipschitz_within(law: Algorithm1 | Algorithm2, q: FloatArray, window: float)
 
 
 def _third(alpha: AlphaInteraction, lengths: FloatArray, slack: float) -> FloatArray:
-    """Return an upper bound of each pair potential's third derivative, over lengths within the slack."""
+    """Return an upper bound of each pair potential's third derivative, over lengths within a slack."""
     # With F(s) = ψ_α(‖s‖_σ) it is F‴ along the pair three times and (F'/s)' along it once and across twice; of unit
     # vectors the second kind makes 3 e (1 - e²) <= 2/√3 at most.
     ends = np.maximum(lengths + slack * np.linspace(-1.0, 1.0, _PIECES + 1)[:, None], 0.0)

@@ -80,7 +80,7 @@ def spread_over(seen: Observed) -> Enclosure:
 
 
 def _over(seen: Observed, at_samples: Enclosure, bound: Callable[[], FloatArray]) -> Enclosure:
-    """Return the larger end value of each interval, at most a bound of the values between."""
+    """Return an enclosure of a quantity's largest value over each interval between samples."""
     if len(seen.t) == 1:
         return at_samples
     ends = stacked([at_samples[:-1], at_samples[1:]]).max(axis=0)
@@ -113,13 +113,13 @@ def polygons(run: Trajectory, steps: Iterable[int] | None = None) -> Iterator[tu
 
 
 def _legs(h: float, points: FloatArray) -> FloatArray:
-    """Return the control points of velocities."""
+    """Return the Bézier control points of velocities from those of the agents' paths."""
     return 5.0 / h * np.diff(points, axis=1)
 
 
 @dataclass(frozen=True)
 class Nets:
-    """Bounds on the net at samples, or throughout intervals; one number for each."""
+    """Bounds on components and links of the net, at samples or throughout intervals."""
 
     # components, components_least: Number of components at most, and at least: without and with the pairs of which it
     # is open
@@ -185,7 +185,7 @@ def _unknown_nets(seen: Observed, count: int) -> Nets:
 
 
 def _slack(low: FloatArray, r: Any, h: Any, speed: Any, force: Any) -> FloatArray:
-    """Return how far a distance may exceed its end values, given relative speeds and accelerations."""
+    """Return how far a distance may exceed its interval's end values, given relative speed and acceleration."""
     straight_part, curved_part = 0.5 * speed * h, h**2 / 8.0 * (2.0 * speed**2 / r + force)
     return np.where(low - straight_part >= 0.5 * r, np.minimum(straight_part, curved_part), straight_part)
 
@@ -206,7 +206,7 @@ def _rounding(seen: Observed) -> float:
 
 
 def _row(run: Trajectory, k: int, pairs: LinkArray, certain: npt.NDArray[np.bool_]) -> tuple[float, ...]:
-    """Return a row of `Nets` from the possible and the certain links near sample k."""
+    """Return bounds on components, largest component and links, from possible and certain links."""
     count = int(certain.sum())
     if count == len(pairs):
         number = run.n - float(run.metric("connectivity")[k]) * (run.n - 1)

@@ -23,12 +23,12 @@ from flockana.theorems.theorem_toolkit import (
 
 
 def gains_of(run: Trajectory | Observed) -> FloatArray:
-    """Return c1γ of each agent, shape (n,)."""
+    """Return the position gain c1γ of each agent, shape (n,)."""
     return np.broadcast_to(np.asarray(run.law.gains.c1_gamma, dtype=np.float64), (run.n,))
 
 
 def bound(energy: Enclosure, gain: float, unit: float | None) -> Enclosure:
-    """Return the distance that a given potential energy allows an agent, with linear or bounded pull."""
+    """Return the largest distance from the centre of its pull that a potential energy allows an agent."""
     height = energy.clip(0.0) / gain
     return (2.0 * height + (0.0 if unit is None else (height / unit).square())).sqrt()
 

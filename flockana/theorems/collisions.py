@@ -43,7 +43,7 @@ def contacts_of(run: Trajectory, tolerances: Tolerances) -> tuple[Contact, ...]:
 
 
 def passed(seen: Observed, tolerances: Tolerances) -> dict[Pair, float]:
-    """Return pairs that certainly met, as they swapped order on a line, with the overlap."""
+    """Return pairs of agents that certainly met by swapping order on a line, with the overlap."""
     # How far they go past is known to the error of the run.
     depths: dict[Pair, float] = {}
     noise = _noise(seen, tolerances)
@@ -62,7 +62,7 @@ def passed(seen: Observed, tolerances: Tolerances) -> dict[Pair, float]:
 
 
 def near(seen: Observed, tolerances: Tolerances) -> list[set[Pair]]:
-    """Return pairs whose paths, error included, may come within contact, by interval between samples."""
+    """Return pairs of agents that may come within contact distance, for each interval between samples."""
     noise = _noise(seen, tolerances) + 2.0 * seen.between_error
     return seen.cached(f"near within {noise.tobytes()!r}", lambda: _near(seen.run, noise))
 

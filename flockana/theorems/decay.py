@@ -43,7 +43,7 @@ def lattice_equilibria() -> dict[str, Linearisation]:
 
 
 def row(rates: Decay) -> dict[str, Any]:
-    """Return a row of the decay table as plain data."""
+    """Return a row of the table of decay rates as plain data."""
     return {
         "law": rates.law,
         "n": rates.n,

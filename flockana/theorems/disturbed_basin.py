@@ -21,7 +21,7 @@ _MOST = 7  # agents of which a basin is proved within seconds
 
 
 class _Case(NamedTuple):
-    """Bound and start in lengths of ℓ, the unit of σ₁; `unit` is ℓ in the run's lengths."""
+    """Ultimate bound and initial state in units of ℓ, the length unit of σ₁."""
 
     bound: Any  # UltimateBound
     q: FloatArray

@@ -47,7 +47,7 @@ class Enclosure:
 
     @classmethod
     def around(cls, value: Real, half_width: Real = 0.0) -> Enclosure:
-        """Return the enclosure of a half width around a value; ∞ or NaN as half width encloses everything."""
+        """Return the enclosure of given half width around a value; an infinite or NaN half width covers all."""
         value, half = np.asarray(value, dtype=np.float64), np.asarray(half_width, dtype=np.float64)
         with np.errstate(invalid="ignore"):
             return _outward(value - half, value, value + half, exact=half == 0.0)
@@ -62,7 +62,7 @@ class Enclosure:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape of the array."""
+        """Shape of the array of enclosed quantities."""
         return np.shape(self.mid)
 
     @property
@@ -74,7 +74,7 @@ class Enclosure:
 
     @property
     def worst(self) -> Enclosure:
-        """Entry that decides nonnegativity, as a scalar enclosure; 1 for an empty array."""
+        """Enclosed entry that decides whether all are nonnegative, as a scalar; 1 for an empty array."""
         if not self.mid.size:
             return Enclosure.of(1.0)
         k = self.worst_index
@@ -135,7 +135,7 @@ class Enclosure:
         return Enclosure(lo, np.abs(self.mid), np.maximum(np.abs(self.lo), np.abs(self.hi)))
 
     def square(self) -> Enclosure:
-        """Return x², at least 0."""
+        """Return the enclosure of x² for an enclosed x, at least 0."""
         magnitude = abs(self)
         return magnitude * magnitude
 
@@ -144,7 +144,7 @@ class Enclosure:
         return self.clip(0.0).rising(np.sqrt, ulps=1).clip(0.0)
 
     def exp(self) -> Enclosure:
-        """Return e^x."""
+        """Return the enclosure of e^x for an enclosed x."""
         return self.rising(np.exp).clip(0.0)
 
     def log(self) -> Enclosure:
@@ -152,13 +152,13 @@ class Enclosure:
         return self.clip(0.0).rising(np.log)
 
     def rising(self, function: Callable[[FloatArray], Any], *, ulps: int = _ULPS) -> Enclosure:
-        """Return a nondecreasing function of the enclosure, with ends rounded outwards."""
+        """Return the enclosure of a nondecreasing function's values, with ends rounded outwards."""
         with np.errstate(all="ignore"):
             lo, midpoint, hi = (np.asarray(function(end), dtype=np.float64) for end in (self.lo, self.mid, self.hi))
         return _outward(lo, midpoint, hi, ulps=ulps)
 
     def falling(self, function: Callable[[FloatArray], Any]) -> Enclosure:
-        """Return a nonincreasing function of the enclosure, with ends rounded outwards."""
+        """Return the enclosure of a nonincreasing function's values, with ends rounded outwards."""
         return -self.rising(lambda x: -np.asarray(function(x), dtype=np.float64))
 
     def clip(self, least: float) -> Enclosure:
@@ -172,7 +172,7 @@ class Enclosure:
             return _outward(self.lo - by, self.mid, self.hi + by, exact=by == 0.0)
 
     def scaled_out(self, share: float) -> Enclosure:
-        """Return the enclosure widened by a share of each end's size; infinite ends stay."""
+        """Return the enclosure widened by a fraction of each end's size; infinite ends stay."""
         with np.errstate(invalid="ignore"):
             lo, hi = self.lo - share * np.abs(self.lo), self.hi + share * np.abs(self.hi)
         return Enclosure(np.where(np.isinf(self.lo), self.lo, lo), self.mid, np.where(np.isinf(self.hi), self.hi, hi))
@@ -205,14 +205,14 @@ def stacked(enclosures: Any) -> Enclosure:
 
 
 def _product(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return the product with 0 times ∞ as 0, as infinite ends stand for arbitrarily large numbers."""
+    """Return the product of interval ends, with 0 times ∞ as 0."""
     with np.errstate(invalid="ignore", over="ignore", under="ignore"):
         product: FloatArray = a * b
     return np.where((a == 0.0) | (b == 0.0), 0.0, product)
 
 
 def _outward(lo: Any, mid: Any, hi: Any, *, ulps: int = 1, exact: Any = False, keep_zero: bool = True) -> Enclosure:
-    """Return computed ends moved outwards by their rounding; exact ends are kept."""
+    """Return an enclosure whose computed ends are moved outwards by their rounding; exact ends are kept."""
     lo, hi = np.asarray(lo, dtype=np.float64), np.asarray(hi, dtype=np.float64)
     lower_end, upper_end = lo, hi
     for _ in range(ulps):

@@ -85,7 +85,7 @@ def falling_share(
     *,
     one_sign: bool = False,
 ) -> Enclosure:
-    """Return −rate over the magnitude of its terms, from 1 (all terms fall) to −1, at each sample."""
+    """Return −dH/dt over the magnitude of its terms, from 1 (all terms fall) to −1, at each sample."""
     # Terms of one sign in exact arithmetic cancel in their computation alone, whatever the error of the state.
 
     def share(run: Trajectory) -> FloatArray:
@@ -179,7 +179,7 @@ def nothing_adds_energy(run: Observed) -> list[Hypothesis]:
 
 
 def declared(run: Observed) -> list[Hypothesis]:
-    """Return the hypotheses of the balance: the γ-agent's declared velocity is true in the given frame."""
+    """Return the energy balance's hypotheses: that the γ-agent's declared velocity is true, or none."""
     return [declared_rate_is_true(run.run)] if run.law.target is not None and not run.law.moving else []
 
 
@@ -203,7 +203,7 @@ def _rates(run: Trajectory) -> FloatArray:
 
 
 def _own_terms(seen: Observed, tolerances: Tolerances) -> Checked:
-    """Return the two claims about a user's law: no term adds energy, and the energy balances."""
+    """Return hypotheses and claims about a user's law: no term adds energy, and the energy balances."""
     rates = _rates(seen.run)
     maximum, largest = float(rates.max(initial=0.0)), float(np.abs(rates).max(initial=0.0))
     status: HypothesisStatus = "unmet" if maximum > (seen.n**2 + 64) * EPS * largest else "assumed"

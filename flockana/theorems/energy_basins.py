@@ -68,7 +68,7 @@ ALONE = Basin(0.0, inf, 0.0, inf)  # of one agent, which has no relative motion
 
 
 def curvatures(stiffness: Any, rigid: FloatArray) -> tuple[float, float]:
-    """Return the least eigenvalue off rigid motions, less its rounding, and the largest; NaN and 0 without any."""
+    """Return least stiffness eigenvalue off rigid motions, less rounding, and largest; NaN and 0 if none."""
     free_directions = np.linalg.svd(rigid, full_matrices=True)[0][:, rigid.shape[1] :]
     if free_directions.shape[1] == 0:
         return nan, 0.0
@@ -84,7 +84,7 @@ def kinetic(p: FloatArray, off: float = 0.0) -> float:
 
 
 def gyration(q: FloatArray) -> float:
-    """Return the least size of the motion of a unit rotation, over all coordinates; ∞ on a line."""
+    """Return the least norm of all agents' displacement by a unit infinitesimal rotation; ∞ on a line."""
     x, m = moving_frame(q), q.shape[1]
     turns = []
     for a in range(m):

@@ -93,7 +93,7 @@ def _read_table(path: Path) -> Iterator[Erratum]:
 
 
 def _order(item: Erratum) -> tuple[bool, str, int]:
-    """Return the sort key of an erratum: E2 before E10, numbered errata of a source before its other statements."""
+    """Return the sort key of an erratum: E2 before E10, numbered errata first within a source."""
     letters = item.id.rstrip("0123456789")
     return item.id[0].islower(), letters, int(item.id.removeprefix(letters) or 0)
 

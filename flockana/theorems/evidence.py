@@ -56,7 +56,7 @@ class NoCase(Evidence):
 
 
 class State(Evidence):
-    """Positions, with scale and range of their net."""
+    """Positions of agents as evidence, with scale d and range r of their net."""
 
     def __init__(self, q: Any, d: Any, r: Any) -> None:
         self.q: FloatArray = ensure_points("q", q)

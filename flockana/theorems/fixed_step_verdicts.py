@@ -66,7 +66,7 @@ def _of_law(seen: Observed, law: FixedSteps) -> Observed:
 
 
 def _of_energy(given: Trajectory, since: int, needs: list[Hypothesis], tolerances: Tolerances) -> list[Claim]:
-    """Return two claims of flockana: the energy falls at every sample, and rises at most by the scheme's defect."""
+    """Return two claims: the energy falls at every sample, and rises at most by the scheme's defect."""
     run, law = given.window(float(given.t[since]), float(given.t[-1])), given.law.law
     energy = run.energy()
     unit, rounding = float(np.abs(energy).max()) or 1.0, (run.n**2 + 64) * EPS

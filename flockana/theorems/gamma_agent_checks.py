@@ -39,7 +39,7 @@ def _sample_times(run: Trajectory) -> FloatArray:
 
 
 def _seen_everywhere(run: Trajectory, times: FloatArray) -> bool:
-    """Return whether nothing can hide between sample times, by closed form or by the declared time scale."""
+    """Return whether the γ-agent's motion has no features hidden between the times it is sampled at."""
     target = run.law.target
     has_feature = target.feature is not None and len(times) > 1
     return has_closed_path(target) or bool(
@@ -48,7 +48,7 @@ def _seen_everywhere(run: Trajectory, times: FloatArray) -> bool:
 
 
 def _between(t: FloatArray) -> FloatArray:
-    """Return Gauss nodes of both halves of every interval, shape (T − 1, 2, 3)."""
+    """Return Gauss quadrature times in both halves of every interval, shape (T − 1, 2, 3)."""
     midpoints, half_width = 0.5 * (t[:-1] + t[1:]), 0.25 * np.diff(t)
     halves = np.stack([midpoints - half_width, midpoints + half_width], axis=1)
     return halves[:, :, None] + half_width[:, None, None] * _NODES

@@ -29,7 +29,7 @@ def condition(
     decided: Decided = "exact",
     remedy: str = "",
 ) -> Hypothesis:
-    """Return a hypothesis that is met or unmet, never assumed.
+    """Return a hypothesis with a given name that is met or unmet, never assumed.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def _fact_of(function: DistanceFunction | None, name: str, whose: str) -> Fact:
 
 
 def positive(run: Observed | Tube, **gains: str) -> Hypothesis:
-    """Return the hypothesis that some gains are positive.
+    """Return the hypothesis that some gains of the law are positive.
 
     Parameters
     ----------

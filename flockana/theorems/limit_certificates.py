@@ -33,18 +33,18 @@ class Certificate:
 
     @property
     def certain(self) -> bool:
-        """Whether the margin exceeds its error."""
+        """Whether the certificate's margin exceeds its error."""
         return self.margin > self.error
 
 
 def best_of(certificates: Iterable[Certificate]) -> Certificate:
-    """Return the certificate with the largest margin; an undecided one without any."""
+    """Return the certificate with the largest margin less error; an undecided one if there is none."""
     certificates_given = [each for each in certificates if not isnan(each.margin)]
     return max(certificates_given, key=lambda each: each.margin - each.error, default=Certificate(-1.0, ""))
 
 
 def evidence(t: npt.ArrayLike, amplitude: npt.ArrayLike, name: str) -> str:
-    """Return in words the decay of an amplitude from its maximum to the last eighth of a run."""
+    """Return in words how far an amplitude decays from its maximum to the last eighth of a run."""
     times, values = np.asarray(t, dtype=np.float64), np.maximum(np.asarray(amplitude, dtype=np.float64), _LEAST)
     late_maximum = values[times >= times[-1] - (times[-1] - times[0]) / _LAST].max()
     factor = float(values.max() / late_maximum)

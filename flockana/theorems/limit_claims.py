@@ -62,6 +62,6 @@ def lattice_limit(seen: Observed, needs: Needs, tolerances: Tolerances, *, name:
 
 
 def limit_strain(seen: Observed, end: TerminalState, caught: Basin) -> Enclosure:
-    """Return the largest |link − d|/d at the minimum near the last state, with position error δ."""
+    """Return the largest relative link strain |link − d|/d at the minimum near a run's last state."""
     rounding = 4.0 * EPS * float(abs(seen.run.q[-1]).max())
     return Enclosure.around(end.strain, (sqrt(2.0) * caught.distance + rounding) / seen.law.alpha.d)

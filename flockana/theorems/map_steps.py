@@ -43,7 +43,7 @@ def _ensure_next_step(run: Trajectory, k: int, steps: int) -> None:
 
 
 def _differences(run: Trajectory, k: int, steps: int) -> Iterator[tuple[str, float, float]]:
-    """Yield (name, relative error, error) of each series at the sample after sample k."""
+    """Yield name, relative and absolute difference of each recomputed series, at the sample after k."""
     scales = run.scales
     floors = {"q": scales.length, "p": scales.speed, "u": scales.force}
     for name, values in _recompute(run, k, steps, 0.0).items():
@@ -84,7 +84,7 @@ def paired_orbit(run: Trajectory) -> Pair:
 
 
 def _nudged_orbits(run: Trajectory, steps: Any, memory: Any) -> Pair:
-    """Return a map's run with two orbits from perturbed starts; unknown after they part."""
+    """Return a map's run with two orbits from perturbed starts; unknown after the orbits separate."""
     begins = all(np.array_equal(memory[name], run.extra[name][0]) for name in memory)
     rng, scales, orbits = np.random.default_rng(0), run.scales, []
     signs = [rng.choice([-1.0, 1.0], size=run.q[0].shape) for _ in range(2)]
@@ -107,7 +107,7 @@ def _nudged_orbits(run: Trajectory, steps: Any, memory: Any) -> Pair:
 
 
 def _visited(law: DiscreteLaw, times: FloatArray, q: FloatArray, p: FloatArray, memory: Any, wanted: Any) -> Any:
-    """Return states after some steps, in blocks of the law's size."""
+    """Return a map's states after selected numbers of steps, computed in blocks."""
     blocks: list[Any] = []
     for first in range(0, len(times), law.steps_at_once):
         rows = wanted[(wanted > first) & (wanted <= first + law.steps_at_once)] - first
@@ -122,7 +122,7 @@ def _visited(law: DiscreteLaw, times: FloatArray, q: FloatArray, p: FloatArray, 
 
 
 def _known_errors(t: FloatArray, q: FloatArray, p: FloatArray, length: float = 1.0, speed: float = 1.0) -> Errors:
-    """Return half widths over the run, infinite from the first separation of the orbits on."""
+    """Return half widths of a map's run, infinite from the first separation of perturbed orbits on."""
     is_close = ((q <= _PARTED * length) & (p <= _PARTED * speed)).all(axis=1)
     unknown = ~np.logical_and.accumulate(is_close)
     q, p = (np.where(unknown[:, None], np.inf, x) for x in (q, p))

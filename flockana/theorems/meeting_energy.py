@@ -9,7 +9,7 @@ from flockana.theorems.theorem_toolkit import EPS, Enclosure, Hypothesis, Observ
 
 
 class PairEnergies(NamedTuple):
-    """Energies of a law's pairs, gain included."""
+    """Potential energies of a law's pairs of agents, gain included."""
 
     # By how much a coincident pair has more than the least that a pair has; infinite of a singular potential
     c_star: float
@@ -40,7 +40,7 @@ def _potential_bounds(pair: PairInteraction) -> tuple[tuple[float, float], tuple
 
 
 def above_least(run: Trajectory | Observed, energy: Enclosure) -> Enclosure:
-    """Return an energy less the least total potential of all pairs."""
+    """Return an energy minus the least possible total potential of all pairs."""
     floor = meeting(run).floor
     return energy if floor == 0.0 else (energy - floor).widened(4.0 * EPS * abs(floor))
 

@@ -43,7 +43,7 @@ class End(NamedTuple):
 
     @property
     def distance(self) -> float:
-        """Largest distance from the true state, over all coordinates."""
+        """Largest distance of the computed last state from the true state, over all coordinates."""
         return float(np.linalg.norm(self.q_error))
 
 
@@ -61,13 +61,13 @@ class Observed(ResultCache):
 
     @classmethod
     def of(cls, run: Trajectory) -> Observed:
-        """Return a run with its second run; cached with the run."""
+        """Return a run paired with its second run for error estimates; cached with the run."""
         pair_runs = paired_orbit if run.law.is_map else paired
         return run.cached("observed", lambda: cls(run, *pair_runs(run)))
 
     @classmethod
     def alone(cls, run: Trajectory) -> Observed:
-        """Return a run taken as exact up to rounding, for comparing claims of two runs."""
+        """Return a run taken as exact up to rounding, without a second run."""
         zeros = np.zeros((len(run.t), run.n))
         return cls(run, run, run, Errors(run.t, zeros, zeros, zeros[:, 0], zeros[:, 0]), doubt_about(run))
 
@@ -78,12 +78,12 @@ class Observed(ResultCache):
 
     @property
     def n(self) -> int:
-        """Number of agents."""
+        """Number of agents of the run."""
         return self.run.n
 
     @property
     def m(self) -> int:
-        """Dimension of space."""
+        """Dimension of space of the run."""
         return self.run.m
 
     @property
@@ -103,7 +103,7 @@ class Observed(ResultCache):
 
     @property
     def floors(self) -> ErrorFloors:
-        """Least errors of the less accurate run: position, speed and work."""
+        """Least errors of position, speed and work of the less accurate of the two runs."""
         return self.other.floors
 
     # half widths ---------------------------------------------------------------------------------------------------
@@ -132,12 +132,12 @@ class Observed(ResultCache):
         return not self.doubt and bool(self.t[0] == self.errors.t[0])
 
     def window(self, start: float, end: float) -> Observed:
-        """Return the part of the run within given times, with its errors."""
+        """Return the observed run restricted to given times, with its errors."""
         given_run, run, other_run = (item.window(start, end) for item in (self.given, self.run, self.other))
         return replace(self, given=given_run, run=run, other=other_run)
 
     def _windowed(self, errors: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-        """Return the largest half width within one law time of each interval; for a map, within the interval."""
+        """Return the largest error half width within one natural time of each interval (of a map, inside it)."""
         unit, times = 0.0 if self.is_map else self.run.scales.time, self.errors.t
         first = np.searchsorted(times, start - unit)
         return largest_over(errors, first, np.maximum(np.searchsorted(times, end + unit, side="right"), first + 1))
@@ -181,16 +181,16 @@ class Observed(ResultCache):
 
     @property
     def accuracy_of_end(self) -> float:
-        """Stated error of the last positions: 0 for runs."""
+        """Stated position error of the last sample: 0 for simulated runs."""
         return 0.0
 
     @property
     def allowed(self) -> tuple[Trajectory, ...]:
-        """Other final states within the accuracy; empty for a run."""
+        """Other trajectories within the stated accuracy of the samples; empty for a simulated run."""
         return ()
 
     def sensitivity(self, observable: Callable[[Trajectory], Any]) -> Any:
-        """Return the variation of an observable over the states within the accuracy; 0 for a run."""
+        """Return the variation of an observable over states within the samples' accuracy; 0 for a run."""
         return 0.0
 
     @cached_property
@@ -244,13 +244,13 @@ class Observed(ResultCache):
 
     @cached_property
     def end(self) -> End:
-        """Last state of the run."""
+        """Last state of the run, with its errors."""
         return End(self.run.q[-1], self.run.p[-1], self.shape_error[-1], self.speed_error[-1])
 
     # spans ---------------------------------------------------------------------------------------------------------
 
     def known_samples(self, known: Any) -> int:
-        """Return the number of known samples before the first unknown one; 0 if they span less than a law time."""
+        """Return the number of samples before the first unknown one; 0 if they span too short a time."""
         unknown = np.flatnonzero(~np.asarray(known))
         count = int(unknown[0]) if unknown.size else len(self.t)
         is_complete = count == len(self.t) and count > 1
@@ -268,7 +268,7 @@ def observed(law: Any, q0: Any, p0: Any, t_span: tuple[float, float], **options:
 
 
 def with_doubt(claims: Iterable[Claim], seen: Observed) -> tuple[Claim, ...]:
-    """Return claims with a doubt about the run in their details; undecided for a failed run."""
+    """Return claims with a doubt about the run added to inconclusive ones; undecided for a failed run."""
     if seen.is_map and (seen.doubt or seen.known < len(seen.t)):
         claims = (_within_known_orbit(claim, seen) for claim in claims)
     if not seen.doubt:
@@ -295,7 +295,7 @@ def _within_known_orbit(claim: Claim, seen: Observed) -> Claim:
 
 
 def in_balls(claim: Claim) -> Claim:
-    """Return a claim about a map's run from its orbit in balls, with that rigour."""
+    """Return a claim about a map's run with interval rigour, as its orbit is known in ball arithmetic."""
     return replace(claim, rigour="interval") if claim.rigour == "numeric" and claim.about == "run" else claim
 
 
@@ -318,7 +318,7 @@ def with_hypothesis(claim: Claim, need: Hypothesis) -> Claim:
 
 
 def by_both_runs(seen: Observed, check: Callable[[Trajectory], Claim]) -> Claim:
-    """Return a claim from a function of one run, with a margin enclosed by the two runs' difference."""
+    """Return a claim from a function of a run, its margin enclosed by the difference of the two runs."""
     # For margins that are observables themselves. What is nonlinear in an error, such as a logarithm of what decays, is
     # made from enclosures of its parts instead.
     best, *other_claims = (check(run) for run in (seen.run, seen.other, *seen.allowed))
@@ -338,6 +338,6 @@ def _apart(one: Claim, other: Claim) -> float:
 
 
 def _norm(x: FloatArray, errors: FloatArray) -> Enclosure:
-    """Return the norm over all agents of vectors with errors."""
+    """Return the enclosed Euclidean norm, over all agents, of vectors with errors."""
     magnitudes = Enclosure.around(lengths(x), 0.0).square().sum(axis=1).sqrt()
     return magnitudes.widened(np.linalg.norm(errors, axis=1)).clip(0.0)

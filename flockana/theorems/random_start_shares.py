@@ -13,7 +13,7 @@ INTERVAL_ERROR = 1e-9  # of the ends of an interval, which are quantiles of a be
 
 
 def interval(count: int, size: int, *, undecided: int = 0) -> tuple[float, float]:
-    """Return the exact Clopper-Pearson interval of a share from `count` successes among `size`."""
+    """Return the exact Clopper-Pearson confidence interval of a proportion, `count` successes in `size`."""
     # Outcomes that are undecided count against the lower end and for the upper one.
     low, _ = clopper_pearson(count, size, level=CONFIDENCE)
     _, high = clopper_pearson(count + undecided, size, level=CONFIDENCE)
@@ -21,17 +21,17 @@ def interval(count: int, size: int, *, undecided: int = 0) -> tuple[float, float
 
 
 def always(name: str, holds: Iterable[bool | None], what: str, stated: str, *, witness: Any = None) -> Claim:
-    """Return a claim about every start: refuted if the share is certainly below 1, never verified by samples."""
+    """Return a claim that every start has a property: refuted if the proportion is certainly below 1."""
     return _judged(name, list(holds), 1.0, what, about="all", stated=stated, witness=witness)
 
 
 def mostly(name: str, holds: Iterable[bool | None], what: str, stated: str, *, witness: Any = None) -> Claim:
-    """Return a claim that a share is at least half: verified by its lower bound, refuted by its upper bound."""
+    """Return a claim that at least half of random starts have a property, from a confidence interval."""
     return _judged(name, list(holds), 0.5, what, stated=stated, witness=witness)
 
 
 def _judged(name: str, holds: list[bool | None], least: float, what: str, **fields: Any) -> Claim:
-    """Return a claim by the share of starts with a property; None entries are undecided."""
+    """Return a claim about the proportion of starts with a property; None entries are undecided."""
     count, case_count, unknown = sum(map(bool, holds)), len(holds), sum(answer is None for answer in holds)
     low, high = interval(count, case_count, undecided=unknown)
     text = f", undecided in {unknown}" if unknown else ""

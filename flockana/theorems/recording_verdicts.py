@@ -68,7 +68,7 @@ class ObservedRecording(Observed):
 
     @property
     def residual(self) -> Enclosure:
-        """Energy balance of the law's solution, as a recording has no work."""
+        """Residual of the energy balance of the law's solution, as a recording has no work."""
         return Observed(self.given, self.run, self.other, self.errors, self.doubt).residual
 
     @property
@@ -136,12 +136,12 @@ class RecordingEvidence(Evidence):
         return _weighed(examine_observed(item, observation, tolerances), rec, first)
 
     def _moving(self) -> Recording:
-        """Return the recording with velocities."""
+        """Return the recording, with velocities added if it has none."""
         rec = self.rec.measured
         return rec if rec.p is not None else rec.with_velocities()
 
     def _examine_samples(self, item: Theorem, tolerances: Tolerances) -> Known:
-        """Return the result of a definition about samples, without assumptions between them."""
+        """Return a definition's result on a recording's samples, without assumptions between them."""
         if item.id not in DEFINITIONS:
             raise ArgumentError(
                 f"{item.id} is about a law: expected verify({item.id!r}, recording, law=...); without one, "
@@ -161,13 +161,13 @@ class RecordingEvidence(Evidence):
 
 
 def _half_widths(place: FloatArray, speed: FloatArray) -> tuple[FloatArray, ...]:
-    """Return half widths of x_i − x_c, v_i − v_c, x_c and v_c, from the agents' half widths."""
+    """Return error bounds of deviations from the centre and of the centre, from those of the agents."""
     mean_widths = place.mean(axis=1), speed.mean(axis=1)
     return place + mean_widths[0][:, None], speed + mean_widths[1][:, None], *mean_widths
 
 
 def _widths(rec: Recording) -> tuple[FloatArray, FloatArray]:
-    """Return the accuracy of positions and velocities, shape (T, n)."""
+    """Return the stated accuracy of a recording's positions and velocities, shape (T, n) each."""
     position_error, speed = (np.asarray(item, dtype=np.float64) for item in (rec.accuracy.place, rec.accuracy.speed))
     return np.broadcast_to(position_error, rec.q.shape[:2]), np.broadcast_to(speed, rec.q.shape[:2])
 
@@ -202,12 +202,12 @@ def observed_recording(rec: Recording, law: Any, follow: Following) -> ObservedR
 
 
 def _weighed(known: Known, rec: Recording, first: Hypothesis) -> Known:
-    """Return hypotheses, with an extra first one, and claims with the rigour allowed by the accuracy."""
+    """Return hypotheses with an extra first one, and claims weakened as the recording's accuracy demands."""
     return (first, *known[0]), tuple(_weighed_claim(claim, rec, first) for claim in known[1])
 
 
 def _weighed_claim(claim: Claim, rec: Recording, first: Hypothesis) -> Claim:
-    """Return a claim with the rigour allowed by the accuracy; undecided under an assumed hypothesis."""
+    """Return a claim, weakened as the recording's accuracy demands; undecided under an assumed hypothesis."""
     if claim.status not in ("verified", "refuted"):
         return claim
     if first.status != "met":

@@ -22,12 +22,12 @@ _POTENTIAL = 1e-13  # of c*: to which ψ_α is known (`AlphaInteraction.psi_alph
 
 
 def frame_error(x: FloatArray) -> float:
-    """Return a bound of the rounding of each coordinate of x_i − x_c, x_c a mean of n numbers."""
+    """Return a bound of the rounding error of each coordinate of x_i − x_c, x_c a mean over n agents."""
     return float((x.shape[-2] + 4) * EPS * np.abs(x).max())
 
 
 def spread_error(x: FloatArray) -> FloatArray:
-    """Return a bound of the rounding of ½ Σ‖x_i − x_c‖², by instant."""
+    """Return a bound of the rounding error of ½ Σ‖x_i − x_c‖² at each time."""
     entry_count, off = x.shape[1] * x.shape[2], frame_error(x)
     norm = np.linalg.norm((x - x.mean(axis=1, keepdims=True)).reshape(len(x), entry_count), axis=1)
     return (entry_count + 4) * EPS * norm**2 + sqrt(entry_count) * off * norm + entry_count * off**2
@@ -43,7 +43,7 @@ def pair_force_error(alpha: AlphaInteraction) -> float:
 
 
 def energy_error(law: Any, q: FloatArray, p: FloatArray, energy: FloatArray) -> FloatArray:
-    """Return a bound of the rounding of the energy of Algorithm 1, 2 or 3, or of a composition, by instant."""
+    """Return a rounding error bound of the energy of Algorithm 1, 2, 3 or a composition, at each time."""
     # All terms of the three are >= 0; those of another pair law may cancel, and count by their own size.
     n, m = q.shape[1:]
     alpha, gains, pairs = law.alpha, law.gains, n * (n - 1) // 2
@@ -76,7 +76,7 @@ def deepest_of(pair: PairInteraction) -> float:
 
 
 def energy_rounding(run: Trajectory) -> FloatArray:
-    """Return a bound of the rounding of a run's energy by instant, by its formula or by its size."""
+    """Return a bound of the rounding error of a run's energy at each time."""
     energy = run.energy()
     if isinstance(run.law, Algorithm1 | Algorithm2 | Algorithm3 | Composition):
         return energy_error(run.law, run.q, run.p, energy)

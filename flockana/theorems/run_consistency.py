@@ -55,7 +55,7 @@ def _ensure_velocities(run: Trajectory, law: VelocityLaw) -> None:
 
 
 def _rounded_input(run: Trajectory, k: int) -> float:
-    """Return the part of a force that is explained by rounding of a sample."""
+    """Return the contribution to a force that rounding of a sample can explain."""
     if run.law.compiled(run.m) is None:
         return 0.0
     try:

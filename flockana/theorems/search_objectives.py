@@ -10,12 +10,12 @@ from flockana.theorems.theorem_toolkit import Claim, Tolerances, Trajectory, len
 
 
 def squash(x: float) -> float:
-    """Return x/(1 + |x|), increasing and finite at infinity."""
+    """Return x/(1 + |x|) of a number, which increases and is finite at infinity."""
     return x / (1.0 + abs(x)) if isfinite(x) else (1.0 if x > 0.0 else -1.0)
 
 
 def pairs_apart(run: Trajectory, claim: Claim) -> float:
-    """Return the surrogate for a count of meetings: the least distance of pairs not yet met, over d."""
+    """Return a search objective for collisions: the least distance of pairs not yet met, over d."""
     i, j = np.triu_indices(run.n, 1)
     apart = lengths(run.q[:, i] - run.q[:, j]).min(axis=0)
     touched = {(contact.i, contact.j) for contact in contacts_of(run, Tolerances())}
@@ -24,7 +24,7 @@ def pairs_apart(run: Trajectory, claim: Claim) -> float:
 
 
 def bridge(run: Trajectory, claim: Claim) -> float:
-    """Return the surrogate for a count of components: the slack of the longest connecting link below r."""
+    """Return a search objective for disconnection, from the longest link needed to connect the net."""
     from scipy.sparse.csgraph import minimum_spanning_tree
     from scipy.spatial.distance import pdist, squareform
 
@@ -33,7 +33,7 @@ def bridge(run: Trajectory, claim: Claim) -> float:
 
 
 def strained(run: Trajectory, claim: Claim) -> float:
-    """Return the surrogate for a lattice as a limit: 1 less the mean over time of the largest strain."""
+    """Return a search objective for lattice limits: 1 less the mean over time of the largest strain."""
     # Runs that pass by a strained equilibrium linger there: the longer they do, the nearer they are to its basin.
     (d, r), series = run.law.lattice, []
     for q in run.q:

@@ -36,7 +36,7 @@ _LOW_ORDER = ("RK23", "RK45")  # methods that take many times the steps of DOP85
 
 
 class Errors(NamedTuple):
-    """Half widths of x_i − x_c, of v_i − v_c, shape (S, n), and of x_c and v_c, shape (S,), at some times."""
+    """Half widths of positions and velocities relative to the centre, and of the centre, at some times."""
 
     t: FloatArray
     shape: FloatArray
@@ -46,7 +46,7 @@ class Errors(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """Two runs of one start at the same samples, their half widths, and reasons for doubt."""
+    """Two runs of one start at the same samples, their error half widths, and reasons for doubt."""
 
     tighter: Trajectory
     looser: Trajectory
@@ -77,7 +77,7 @@ def paired(run: Trajectory) -> Pair:
 
 
 def _longest_step(run: Trajectory) -> float | None:
-    """Return the longest step of the second run; None without a limit."""
+    """Return the longest step allowed in a repeated run; None without a limit."""
     steps, _ = steps_of(run)
     step_limit = max(_MOST_STEPS, _TIMES * len(steps))
     longest = max(_FINER * demand_of(run, run.floors.place).bound, float(steps.sum()) / step_limit)
@@ -114,7 +114,7 @@ def doubt_about(run: Trajectory) -> str:
 
 
 def failure(run: Trajectory) -> str:
-    """Return why a run is invalid (failed, or outside the law's domain); empty if valid."""
+    """Return in words why a run failed or left the law's domain; empty for a valid run."""
     if run.status == "failed":
         return f"the run failed: {run.message}"
     if run.law.is_map:  # a step may lead anywhere
@@ -130,13 +130,13 @@ def failure(run: Trajectory) -> str:
 
 
 def unbounded_errors(run: Trajectory) -> Errors:
-    """Return infinite half widths, for an unknown run."""
+    """Return infinite error half widths, for a run of unknown error."""
     unknown = np.full((1, run.n), np.inf)
     return Errors(run.t[:1], unknown, unknown, unknown[:, 0], unknown[:, 0])
 
 
 def _common_steps(run: Trajectory) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
-    """Return the comparison times of two runs, and the first run's states at these times."""
+    """Return the times at which a run is compared with its repetition, and its states at these times."""
     path = run.path
     stride = max(1, int(np.ceil(3.0 * path.q.size / _MOST)))
     is_kept = np.isin(path.t, run.t)
@@ -145,14 +145,14 @@ def _common_steps(run: Trajectory) -> tuple[FloatArray, tuple[FloatArray, FloatA
 
 
 def _errors(again: Trajectory, states: tuple[FloatArray, FloatArray]) -> Errors:
-    """Return half widths from the difference of two runs at their common times."""
+    """Return error half widths from the difference of two runs at their common times."""
     differences = [(centred(x - y), centres(x - y)) for x, y in zip((again.q, again.p), states, strict=True)]
     (shape, centre), (speed, drift) = ((DOUBT * lengths(a), DOUBT * lengths(b)) for a, b in differences)
     return Errors(again.t, shape, speed, centre, drift)
 
 
 def _at_samples_of(run: Trajectory, t: FloatArray) -> Trajectory:
-    """Return the run at selected samples, with the others as steps between."""
+    """Return a run at selected sample times, with all other samples kept as intermediate steps."""
     if len(t) == len(run.t):
         return run
     keep, path = np.isin(run.t, t), run.path
@@ -168,7 +168,7 @@ def centred(x: FloatArray) -> FloatArray:
 
 
 def largest_over(values: FloatArray, first: Any, stop: Any) -> FloatArray:
-    """Return the largest of the rows from `first` to before `stop`, for each range."""
+    """Return the largest of the values with index from `first` to before `stop`, for each index range."""
     first, stop = np.asarray(first), np.minimum(stop, len(values))
     first = np.minimum(first, stop - 1)
     level = np.floor(np.log2(stop - first)).astype(int)

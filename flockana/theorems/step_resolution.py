@@ -37,18 +37,18 @@ class NeededSteps(NamedTuple):
 
     @property
     def missed(self) -> Any:
-        """Intervals with too long steps, beyond rounding of 1e-9 of a step."""
+        """Indices of the intervals whose steps are too long to resolve the law."""
         return np.flatnonzero(self.step > self.longest * (1.0 + 1e-9))
 
     @property
     def bound(self) -> float:
-        """Longest step that resolves all known features of the law; infinite if all steps do."""
+        """Longest step that resolves all known features of the law; infinite if every step of the run does."""
         steps_missed = self.longest[self.missed]
         return float(steps_missed[steps_missed > 0.0].min(initial=np.inf))
 
 
 def unknown_parts(law: Any) -> tuple[str, ...]:
-    """Return the parts of a law with undeclared functions or unknown feature widths."""
+    """Return the names of a law's parts with undeclared functions or unknown feature widths."""
     return tuple(dict.fromkeys(one.name for one in law.features() if one.width is None and not _has_slopes(one)))
 
 
@@ -109,7 +109,7 @@ def _one_by_one(run: Trajectory, function: LawFunction, at: Any, step: FloatArra
 
 
 def _in_blocks(run: Trajectory, function: LawFunction, at: Any, step: FloatArray, place: float) -> FloatArray:
-    """Return the results of `_one_by_one` for few pairs over many intervals at once."""
+    """Return the largest ω² of pairs with hidden motion, for few pairs over many intervals at once."""
     n, span, worst = len(run.q[0]), np.diff(run.path.t), np.zeros(len(at))
     i, j = np.triu_indices(n, 1) if function.edges is None else np.array(function.edges, dtype=np.intp).reshape(-1, 2).T
     block_length = max(1, _BLOCK // max(1, len(i)))
@@ -127,7 +127,7 @@ def _in_blocks(run: Trajectory, function: LawFunction, at: Any, step: FloatArray
 def _largest(
     of: LawFunction, apart: FloatArray, off: FloatArray, span: Any, step: Any, place: float, n: int
 ) -> FloatArray:
-    """Return the largest ω² along the last axis, of pairs that hide more than `place`."""
+    """Return the largest squared rate ω² of pairs whose hidden motion exceeds a given distance."""
     rate, hidden_path = _hidden(of, apart, off, span)
     rate = rate / n if of.mean else rate
     hidden_distance = rate * step * step * (hidden_path * step / span)
@@ -135,7 +135,7 @@ def _largest(
 
 
 def _control_points(run: Trajectory, k: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the control points of an interval's paths, their reaches and their allowances."""
+    """Return Bézier control points of the agents' paths in an interval, their reaches and error bounds."""
     t, q, p, u, slack = run.path
     points, reach, allowance = control_points(t[k + 1] - t[k], q[k], p[k], u[k], q[k + 1], p[k + 1], u[k + 1])
     return (points, reach, allowance) if slack is None else (points, reach + slack[k], allowance + slack[k])
@@ -153,7 +153,7 @@ def steps_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
 
 
 def _hidden(of: LawFunction, apart: FloatArray, allowance: FloatArray, time: Any) -> tuple[FloatArray, FloatArray]:
-    """Return ω² of each pair over an interval, from relative control points, and its distance change."""
+    """Return the squared rate ω² of each pair over an interval, and the change of its distance."""
     assert of.function is not None
     sides, ends = lengths(np.diff(apart, axis=-2)).sum(axis=-1) + 2.0 * allowance, lengths(apart[..., [0, -1], :])
     midpoints, table = 0.5 * ends.sum(axis=-1), _table(of.function)
@@ -170,7 +170,7 @@ def _hidden(of: LawFunction, apart: FloatArray, allowance: FloatArray, time: Any
 
 @lru_cache(maxsize=64)
 def _table(function: DistanceFunction) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return edges of parts of the range, and the largest slopes of force and adjacency between parts."""
+    """Return edges of distance intervals, and largest slopes of force and adjacency between any two."""
     bounds = function.slopes(_PARTS)
     assert bounds is not None
     edges = np.array([*(bound.left for bound in bounds), bounds[-1].right])
@@ -178,7 +178,7 @@ def _table(function: DistanceFunction) -> tuple[FloatArray, FloatArray, FloatArr
 
 
 def _from_to(values: list[float]) -> FloatArray:
-    """Return the largest of some values from the row's index to the column's."""
+    """Return a matrix of the largest of some values between each row's and each column's index."""
     rows = [np.maximum.accumulate(np.where(np.arange(len(values)) < k, 0.0, values)) for k in range(len(values))]
     return np.array(rows)
 

@@ -99,11 +99,11 @@ class Theorem:
         return erratum_of(self.id)
 
     def by(self, claim: str) -> By:
-        """Return the author of a claim."""
+        """Return the author of a named claim of the theorem."""
         return "corrected" if claim in self.corrected else "flockana" if claim in self.ours else self.author
 
     def verdict(self, known: Known, used: Tolerances, on: str) -> Verdict:
-        """Return the verdict of hypotheses and claims.
+        """Return the verdict on a theorem, from its hypotheses and claims.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Thresholds of verdicts."""
+"""Numerical thresholds used to judge the claims of theorems."""
 
 from dataclasses import dataclass, fields
 

@@ -40,7 +40,7 @@ certain = partial(condition, decided="enclosed")  # a hypothesis that balls deci
 
 @dataclass(frozen=True)
 class TubeAndBasin:
-    """Tube with the basin at its certain end, if any."""
+    """Tube enclosing the motion, with the certified basin at its end, if any."""
 
     tube: Tube  # The tube
     basin: BasinLike | None  # A certified basin that holds all of its end; None if none is known to
@@ -48,7 +48,7 @@ class TubeAndBasin:
 
     @classmethod
     def of(cls, tube: Tube, basin: BasinLike | None) -> TubeAndBasin:
-        """Return a tube with the basin at its end, if any."""
+        """Return a tube enclosing the motion, with the certified basin at its end, if any."""
         if basin is None:
             return cls(tube, None, "no certified basin was given")
         if tube.status != "complete":
@@ -68,7 +68,7 @@ class TubeAndBasin:
 
 
 def enclosed_by(name: str, module: str) -> Callable[..., Checked]:
-    """Return a deciding function for tubes from a module, imported at its first call."""
+    """Return the function that decides a theorem for tubes, imported from its module at the first call."""
 
     def check(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
         decide_claim = getattr(import_module(module), name)
@@ -94,13 +94,13 @@ def decided(name: str, margin: arb, needs: Needs = (), *, detail: str = "", **fi
 
 
 def below(name: str, energy: arb, bound: arb) -> Hypothesis:
-    """Return the hypothesis that an energy lies below a bound, assumed if balls leave it open."""
+    """Return the hypothesis that an energy lies below a bound, assumed if ball arithmetic cannot decide."""
     text = f"H(0) is in [{float(energy.lower()):.6g}, {float(energy.upper()):.6g}], the bound is {float(bound):.6g}"
     return positive_room(name, ends(bound - energy), text)
 
 
 def met(tube: Tube) -> dict[Pair, float]:
-    """Return pairs that certainly meet, as they swap order on a line, with the latest meeting times."""
+    """Return pairs of agents that certainly meet, as they swap order on a line, with latest meeting times."""
     times: dict[Pair, float] = {}
     if tube.m > 1:
         return times
@@ -157,7 +157,7 @@ def converges(case: TubeAndBasin, needs: Needs, name: str, stated: str, detail: 
 
 
 def certain_links(distances: Mapping[Pair, arb], reach: arb) -> tuple[list[Pair], list[Pair]]:
-    """Return (pairs certainly in range, pairs possibly in range)."""
+    """Return the pairs of agents certainly in range and those possibly in range."""
     return (
         [pair for pair, distance in distances.items() if distance < reach],
         [pair for pair, distance in distances.items() if not distance >= reach],

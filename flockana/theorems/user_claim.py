@@ -58,7 +58,7 @@ class OwnCheck:
     statement: str
 
     def __call__(self, seen: Observed, tolerances: Tolerances) -> tuple[list[Hypothesis], list[Claim]]:
-        """Return the claim, judged on a run and its tighter repetition."""
+        """Return the user's claim, judged on a run and its repetition with tighter tolerances."""
         judged_claim = by_both_runs(seen, self.of_run)
         if seen.is_map or judged_claim.status != "verified":
             return [], [judged_claim]
@@ -66,7 +66,7 @@ class OwnCheck:
         return [requirement], [with_hypothesis(judged_claim, requirement)]
 
     def of_run(self, run: Trajectory) -> Claim:
-        """Return the claim by the least margin of one run."""
+        """Return the user's claim, judged by the least margin over one run."""
         margin = self.margin(run)
         try:
             margin_array = np.asarray(margin)

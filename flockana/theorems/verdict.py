@@ -95,7 +95,7 @@ class Verdict:
         raise KeyError(f"{self.theorem} has no claim {name!r}; it has {', '.join(c.name for c in self.claims)}")
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON; infinities and NaN become text."""
+        """Return the verdict as plain data for JSON; infinities and NaN become text."""
         data: dict[str, Any] = plain(asdict(self))
         for claim in data["claims"]:
             claim["needs"] = [requirement["name"] for requirement in claim["needs"]]

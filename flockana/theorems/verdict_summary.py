@@ -20,7 +20,7 @@ def headline(
 
 
 def _counts(status: Status, claims: tuple[Claim, ...], hypotheses: tuple[Hypothesis, ...]) -> str:
-    """Return the count of the deciding status out of all, then the other counts."""
+    """Return in words how many claims have the deciding status, then the other counts."""
     if not claims:
         return "no claim"
     order = dict.fromkeys((status, "refuted", "inconclusive", "verified", "vacuous"))
@@ -31,7 +31,7 @@ def _counts(status: Status, claims: tuple[Claim, ...], hypotheses: tuple[Hypothe
 
 
 def _reason(claims: tuple[Claim, ...], hypotheses: tuple[Hypothesis, ...]) -> str:
-    """Return why claims are vacuous: the first unmet hypothesis, or the claim's own detail."""
+    """Return in words why claims are vacuous: the first unmet hypothesis, or the claim's own detail."""
     silent = [claim for claim in claims if claim.status == "vacuous"]
     requirements = [need for claim in silent for need in (*claim.needs, *hypotheses) if need.status == "unmet"]
     if not requirements:
@@ -51,7 +51,7 @@ def merged(claims: Iterable[Claim]) -> list[tuple[str, Claim]]:
 
 
 def _listed(claims: Iterable[Claim]) -> str:
-    """Return each claim in short with its status; vacuous claims only if all are."""
+    """Return a text with each claim in short and its status; vacuous claims only if all are."""
     claims_given = tuple(claims)
     counted_claims = [claim for claim in claims_given if claim.status != "vacuous"] or list(claims_given[:1])
     return "; ".join(dict.fromkeys(f"{_short(claim)}, {claim.status}" for claim in counted_claims))

@@ -51,7 +51,7 @@ class Verdicts(tuple[Verdict, ...]):
         return latex_table(rows, _HEADS, "llllp{0.4\\linewidth}")
 
     def to_dict(self) -> list[dict[str, Any]]:
-        """Return plain data for JSON."""
+        """Return all verdicts as plain data for JSON."""
         return [verdict.to_dict() for verdict in self]
 
     def to_dataframe(self) -> pandas.DataFrame:

@@ -156,7 +156,7 @@ def _ensure_given(item: Theorem, **case: Any) -> None:
 
 
 def _run(trajectory: Any, law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory:
-    """Return the run, or simulate one from a start (by default at rest, over 20 time units)."""
+    """Return the given run, or simulate one from a start (by default at rest, over 20 time units)."""
     if trajectory is None:
         if law is None or q0 is None:
             raise ArgumentError("got no run and no law with positions: expected a Trajectory, or law=..., q0=...")
@@ -173,7 +173,7 @@ def _run(trajectory: Any, law: Any, q0: Any, p0: Any, t_span: Any) -> Trajectory
 
 
 def _is(kind: str, run: Any) -> bool:
-    """Return whether a value is a recording or a tube, importing its class only if needed."""
+    """Return whether a value is of a given kind, recording or tube, importing its class only if needed."""
     if run is None or isinstance(run, Trajectory):
         return False
     module, name = _KINDS[kind]

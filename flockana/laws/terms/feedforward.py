@@ -29,7 +29,7 @@ class TargetFeedforward(Term):
     functions = ()
 
     def features(self) -> tuple[Feature, ...]:
-        """Return the time features of the γ-agent's motion."""
+        """Return the narrowest feature in time of the γ-agent's motion."""
         return (target_feature(self.target),)
 
     @cached_property

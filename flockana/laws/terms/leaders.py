@@ -40,21 +40,21 @@ class Leaders(Term):
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """Adjacency within the groups."""
+        """Pair law whose adjacency couples the agents within each leader's group."""
         return (LawFunction("the net of each group", self.pair, 0.0, self.damping),)
 
     def features(self) -> tuple[Feature, ...]:
-        """Return the net features of each group, and the time features of the leaders."""
+        """Return the narrowest features: those of each group's net, and of each leader's motion in time."""
         return (*super().features(), *map(target_feature, self.leaders))
 
     @cached_property
     def members(self) -> tuple[npt.NDArray[np.int64], ...]:
-        """The agents of each leader."""
+        """Indices of the agents that follow each leader."""
         return tuple(np.flatnonzero(np.array(self.group) == leader) for leader in range(len(self.leaders)))
 
     @cached_property
     def _pins(self) -> FloatArray:
-        """Column h_i with 1 for pinned agents."""
+        """Column vector h of shape (n, 1): 1 for pinned agents, 0 for the others."""
         pins = np.zeros((len(self.group), 1))
         pins[list(self.pinned)] = 1.0
         return pins

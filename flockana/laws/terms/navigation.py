@@ -49,7 +49,7 @@ class Navigation(Term):
     functions = ()
 
     def features(self) -> tuple[Feature, ...]:
-        """Return the time features of the γ-agent's motion."""
+        """Return the shortest time scale of the γ-agent's motion, as a feature in time."""
         return (target_feature(self.target),)
 
     @property
@@ -90,7 +90,7 @@ class Navigation(Term):
         return form.on_agents(t, q, p, u)
 
     def _along(self, path: Harmonic) -> TermKernel:
-        """Return the compiled form for a harmonic path."""
+        """Return the γ-term in compiled form, for a target on the given harmonic path."""
         c1, c2 = self._gains
         head = [self.moving, self.unit or 0.0, c1.size, path.omega, path.factor]
         kernel_parameters = np.concatenate([head, path.terms.ravel(), c1, c2])
@@ -98,13 +98,13 @@ class Navigation(Term):
 
     @cached_property
     def _straight_form(self) -> TermKernel | None:
-        """Compiled form of a target at rest or on a line, where alone it is exact to the last bit; else None."""
+        """Compiled γ-term for a target at rest or on a line, where it is exact to the last bit; else None."""
         path = self.target.closed_path
         return None if path is None or path.omega else self._form
 
     @cached_property
     def _form(self) -> TermKernel | None:
-        """Compiled form for a target with a harmonic path; else None."""
+        """Compiled γ-term for a target with a harmonic path; None for other targets."""
         path = self.target.closed_path
         return None if path is None else self._along(path)
 

@@ -16,7 +16,7 @@ _SUMS = ("kinds", "forces", "potential_energy")  # as every field has them, from
 
 
 def ensure_one_dimension(obstacles: Iterable[Obstacle], m: int, whose: str) -> None:
-    """Raise unless every obstacle has m dimensions; the message names the owner `whose`."""
+    """Raise unless every obstacle has dimension m; `whose` names the owner of m in the error message."""
     for k, obstacle in enumerate(obstacles):
         if obstacle.dimension != m:
             raise ArgumentError(
@@ -53,7 +53,7 @@ class ObstacleTerm(Term):
     functions = ()
 
     def features(self) -> tuple[Feature, ...]:
-        """Return the layer around the obstacles in which repulsion and braking fall to 0."""
+        """Return as a feature the layer around obstacles in which repulsion and braking fall to 0."""
         is_beta = type(self.field.beta) is BetaInteraction
         return (Feature("the obstacles' repulsion", "agents", self.field.beta.d if is_beta else None),)
 
@@ -70,7 +70,7 @@ class ObstacleTerm(Term):
         check_free(q, self.field.obstacles)
 
     def compiled(self, m: int) -> tuple[TermKernel, ...] | None:
-        """Return compiled terms, one for each kind of obstacle."""
+        """Return the obstacle term in compiled form, one kernel per kind of obstacle; None without one."""
         if not all(getattr(type(self.field), name) is getattr(ObstacleField, name) for name in _SUMS):
             return None
         beta, kernels = self.field.beta, []

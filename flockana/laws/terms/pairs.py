@@ -52,7 +52,7 @@ class PairTerm(Term):
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """The pair law."""
+        """Functions of the distance of two agents in the pair term: the pair law, with its gains c1 and c2."""
         return (LawFunction("the pair law", self.pair, self.stiffness, self.damping),)
 
     def check_start(self, q: FloatArray) -> None:

@@ -29,7 +29,7 @@ class CopiesTerm(Term):
     functions = ()
 
     def features(self) -> tuple[Feature, ...]:
-        """Return the time features of the copies' motion."""
+        """Return the shortest time scale of the γ-agent copies' motion, as a feature in time."""
         return (target_feature(self.copies),)
 
     def check_dimension(self, m: int) -> None:  # noqa: D102

@@ -70,11 +70,11 @@ class Compiled(NamedTuple):
 
     @property
     def reach(self) -> float:
-        """Distance within which the term needs all pairs."""
+        """Largest distance within which any term of the compiled law needs all pairs of agents."""
         return max((term.reach for term in self.terms), default=0.0)
 
     def functions(self, *, several: bool = False) -> LawFunctions:
-        """Return the compiled functions of the law.
+        """Return the compiled force and energy functions of the law.
 
         Parameters
         ----------
@@ -85,11 +85,11 @@ class Compiled(NamedTuple):
 
     @property
     def numbers(self) -> LawNumbers:
-        """Parameters of the compiled functions."""
+        """Numeric parameters of the law's compiled force and energy functions."""
         return law_numbers(self.terms)
 
     def system(self, view: tuple[float, FloatArray, FloatArray], n: int, m: int) -> System:
-        """Return the law in the form of compiled steps, with agents in their original order.
+        """Return the law's data for compiled integration steps, with agents in their original order.
 
         Parameters
         ----------
@@ -104,7 +104,7 @@ class Compiled(NamedTuple):
         )
 
     def in_threads(self, system: System) -> System:
-        """Return a system with functions for several threads.
+        """Return the compiled system with force and energy functions that run in several threads.
 
         Parameters
         ----------
@@ -144,7 +144,7 @@ class Term(ShortRepr, ABC):
         return Unknown(type(self).__name__).functions
 
     def features(self) -> tuple[Feature, ...]:
-        """Return the narrowest features of the term; by default those of its functions."""
+        """Return the narrowest features of the term's parts; by default of its functions of distance."""
         return tuple(map(function_feature, self.functions))
 
     @property
@@ -154,7 +154,7 @@ class Term(ShortRepr, ABC):
 
     @abstractmethod
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:
-        """Add the force to u in place, and return the term's part of dH/dt.
+        """Add the term's force to u in place, and return its contribution to the energy rate dH/dt.
 
         Parameters
         ----------
@@ -175,7 +175,7 @@ class Term(ShortRepr, ABC):
         return np.zeros((*q.shape, q.shape[1]))
 
     def compiled(self, m: int) -> TermKernel | tuple[TermKernel, ...] | None:
-        """Return the term in compiled form, or several terms with the same sum.
+        """Return the term in compiled form, or several compiled terms whose sum it is; None without one.
 
         None, and the law is stepped by scipy's, unless it has one.
         """
@@ -188,4 +188,4 @@ class Term(ShortRepr, ABC):
         """Raise if the term is not for n agents."""
 
     def check_start(self, q: FloatArray) -> None:  # as `check_dimension`
-        """Raise if the term forbids a start from these positions."""
+        """Raise if the term forbids a start from the given positions."""

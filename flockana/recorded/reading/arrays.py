@@ -57,7 +57,7 @@ def named_arrays(
     m: int | None = None,
     jitter: float | None = None,
 ) -> dict[str, Any]:
-    """Return t, q, p, u and read_as from arrays by name, or from the columns of a long table."""
+    """Return t, q, p, u and notes on how they were read, from arrays by name or a long table's columns."""
     arrays = _without_shells(arrays)
     stated_columns = {} if columns is None else dict(columns)
     if (frame := _long_table(arrays, stated_columns, dt)) is not None:
@@ -171,7 +171,7 @@ def _dictionaries(value: Any) -> list[Mapping[str, Any]]:
 
 
 def _joined_agents(agents: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Return a dictionary for each agent as one long table."""
+    """Return the dictionaries of all agents as one long table, columns by name."""
     table: dict[str, list[Any]] = {}
     for k, agent in enumerate(agents):
         columns = dict[str, Any]()

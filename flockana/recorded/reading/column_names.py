@@ -55,7 +55,7 @@ def is_header(name: Any) -> bool:
 
 
 def renaming_note(header: Sequence[Any], names: Sequence[str], where: str) -> str:
-    """Return what is said of names that replace a header; raise where they are not as many, or contradict it."""
+    """Return a note on names that replace a table's header; raise on a wrong count or a contradiction."""
     if len(names) != len(header):
         text = f"{len(header)} columns, {', '.join(map(repr, header[:12]))}, and columns= has {len(names)} names"
         raise ArgumentError(f"{where} has {text}: expected one for each; or {_NAMED}")
@@ -165,7 +165,7 @@ def _time_of(names: Sequence[str], described: Mapping[str, Any], where: str) -> 
 
 
 def by_owner(known: Mapping[str, Word], where: str) -> dict[tuple[str, ...], Kinds]:
-    """Return columns by owner, kind and axis; orientations and other vectors have kinds of their own."""
+    """Return table columns by agent, kind and axis; orientations and other vectors have kinds of their own."""
     patterns: dict[tuple[str, ...], dict[str, str]] = {}
     for name, word in known.items():
         patterns.setdefault(word.pattern, {}).setdefault(word.axis, name)
@@ -199,7 +199,7 @@ def _rivals(where: str, one: str, other: str, kind: str, axis: str) -> ArgumentE
 
 
 def _settle(kinds: Kinds, where: str) -> None:
-    """Resolve px and qx: positions if there are no others; else px is a velocity and qx is rejected."""
+    """Resolve columns px and qx: positions if there are no others; else px is a velocity, qx rejected."""
     for letter in "pq":
         columns = kinds.pop(letter + "?", None)
         if columns is None:
@@ -221,7 +221,7 @@ def _arranged(
     where: str,
     shown: str,
 ) -> Layout:
-    """Return a long layout (one vector) or a wide layout (one vector per agent)."""
+    """Return the layout of table columns: long (one vector per row) or wide (one vector for each agent)."""
     placed = {owner: kinds for owner, kinds in groups.items() if "q" in kinds}
     if stated is not None:
         wanted_words = {str(name): tuple(words_of(name)[0]) for name in stated}
@@ -263,13 +263,13 @@ def _joined(owner: Sequence[str]) -> str:
 
 
 def _are_agents(owners: list[tuple[str, ...]]) -> bool:
-    """Return whether names differ only in a number or letter, or all begin with a word for agents."""
+    """Return whether names look like agents: differing only in a number or letter, or led by an agent word."""
     stems = {tuple(word for word in owner if not word.isdigit() and len(word) > 1) for owner in owners}
     return len(stems) == 1 or all(is_agents_word(owner[0]) and len(owner) > 1 for owner in owners)
 
 
 def _are_pairs(placed: Mapping[tuple[str, ...], Kinds]) -> bool:
-    """Return whether owners on a line are all pairs of some first digits and two or three second ones."""
+    """Return whether names of agents on a line are all pairs of a first character and one of 2 or 3 digits."""
     names, last = {"".join(owner) for owner in placed}, {"".join(owner)[1:] for owner in placed}
     pairs = {name[:1] + digit for name in names for digit in last}
     on_a_line = all({*kinds["q"]} == {"x"} for kinds in placed.values())

@@ -119,7 +119,7 @@ def is_agents_word(word: str) -> bool:
 
 
 def coordinate(words: list[str], unit: Unit | None) -> Word | None:
-    """Return the coordinate meaning of a name's words; None without one."""
+    """Return the coordinate that the words of a column name denote (kind, axis, owner, unit); None without one."""
     at = [k for k, word in enumerate(words) if word in _FUSED or word in "xyzw"]
     if len(at) != 1:
         return None

@@ -20,7 +20,7 @@ _LARGEST = 2**53  # up to which every whole number is a float
 
 @dataclass(frozen=True, eq=False)
 class Box:
-    """Edges of a box as rows, shape (3, 3), with periodic directions; None if the dump does not state them."""
+    """Edge vectors of a simulation box, (3, 3), and which of them are periodic; None if this is not stated."""
 
     edges: FloatArray
     periodic: tuple[bool, ...] | None
@@ -49,7 +49,7 @@ class Box:
         return cls(edges, periodic)
 
     def crossed(self, axes: Sequence[int]) -> list[int]:
-        """Return the periodic edges that have a component along one of some axes."""
+        """Return the indices of periodic box edges that have a component along one of the given axes."""
         return [k for k in range(3) if (self.periodic is None or self.periodic[k]) and self.edges[k, list(axes)].any()]
 
 
@@ -194,7 +194,7 @@ def _parsed(file: TextIO, path: Path) -> Iterator[Snapshot]:
 
 
 def _columns(file: TextIO, names: list[str], count: int, path: Path) -> dict[str, FloatArray]:
-    """Columns by name, the agents in the order of their ids."""
+    """Return the columns of a snapshot by name, with agents in the order of their ids."""
     values = _numbers(file, count, len(names), path, words=[k for k, name in enumerate(names) if name in _WORDS])
     columns = {name: values[:, k] for k, name in enumerate(names)}
     order = np.argsort(columns["id"], kind="stable")

@@ -1,4 +1,4 @@
-"""Numbers that stand for 'not seen', such as -9999: gaps where they are stated, refused where they look so."""
+"""Marker numbers for unseen agents, such as -9999: read as gaps if stated, rejected if only suspected."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -21,7 +21,7 @@ _FAST, _SHORT, _FEW = 0.98, 0.25, 10  # quantiles: fast steps, short leaps; step
 
 
 def without_missing(arrays: Mapping[str, Any], missing: Any, where: str) -> dict[str, Any]:
-    """Return t, q, p, u with gaps where a vector is a number that stands for 'not seen'; raise where one looks so."""
+    """Return t, q, p, u with stated markers of unseen agents as gaps; raise if a value looks like a marker."""
     shape = np.shape(arrays["q"])
     vectors = {k: np.array(arrays[k], dtype=np.float64) for k in "qpu" if k in arrays and np.shape(arrays[k]) == shape}
     markers = ensure_numbers("missing", [] if missing is None else missing, "numbers that stand for 'not seen'")
@@ -49,7 +49,7 @@ def without_missing(arrays: Mapping[str, Any], missing: Any, where: str) -> dict
 
 
 def _beyond(x: FloatArray, value: float, spans: float) -> _Mask:
-    """Return along which axes a value is beyond all other numbers, by more than some of their spans."""
+    """Return on which axes a value lies outside the range of all other numbers, by a multiple of that range."""
     others = np.where(x == value, np.nan, x)
     low, high = np.nan_to_num(others, nan=np.inf).min((0, 1)), np.nan_to_num(others, nan=-np.inf).max((0, 1))
     margin = spans * np.where(low < high, high - low, 0.0)
@@ -58,14 +58,14 @@ def _beyond(x: FloatArray, value: float, spans: float) -> _Mask:
 
 
 def _varying(x: FloatArray) -> _Mask:
-    """Return along which axes numbers differ."""
+    """Return on which axes the known numbers of an array differ."""
     known = x[~np.isnan(x).any(axis=2)]
     result: _Mask = (known != known[:1]).any(axis=0)
     return result
 
 
 def _places(x: FloatArray, value: float, kind: str) -> _Mask:
-    """Return which vectors are a value: positions along all axes that vary, or any along one where it is far off."""
+    """Return which vectors are a marker value: on all axes that vary, or on one where the value is far off."""
     is_value, is_variable, small = x == value, _varying(x), value in _SMALL
     far: _Mask = is_value & _beyond(x, value, _APART if small else 1.0)
     if small:  # of positions, of agents that are elsewhere, too
@@ -76,7 +76,7 @@ def _places(x: FloatArray, value: float, kind: str) -> _Mask:
 
 
 def _looks_missing(x: FloatArray, gone: _Mask, value: float, kind: str) -> bool:
-    """Return whether vectors that are a value look like agents that were not seen."""
+    """Return whether the vectors that equal a value look like markers of unseen agents."""
     count, is_variable, left = gone.sum(), _varying(x), gone[1:] != gone[:-1]
     plain = value in _PLAIN or abs(value) >= _HUGE
     if value not in _SMALL and (far := _beyond(x, value, 1.0 if plain else _FAR)).any():

@@ -26,7 +26,7 @@ def table_arrays(
     m: int | None = None,
     jitter: float | None = None,
 ) -> dict[str, Any]:
-    """Return t, q, p, u, ids and read_as of a table, in the form of `Recording`."""
+    """Return t, q, p, u, agents' ids and notes on how a table was read, in the form of `Recording`."""
     where = str(frame.attrs.get("where", "the frame"))
     if not len(frame):
         raise ArgumentError(f"{where} has no rows: expected one for each sample of an agent")
@@ -86,7 +86,7 @@ def _ensure_one_agent(frame: Any, layout: Layout, where: str) -> None:
 
 
 def _counted(frame: Any, t: FloatArray | None, dt: float | None, layout: Layout, where: str) -> FloatArray:
-    """Return the time of each row, or the row count without times."""
+    """Return the time of each row: the given times, or dt times the row number."""
     if t is not None:
         return t
     if dt is None:
@@ -101,7 +101,7 @@ def _counted(frame: Any, t: FloatArray | None, dt: float | None, layout: Layout,
 
 
 def _of_dimension(layout: Layout, m: int | None, where: str) -> Layout:
-    """Return the layout with the first m axes."""
+    """Return the layout of table columns restricted to the first m coordinate axes."""
     kinds = layout.long or next(iter(layout.wide.values()))
     if m is None or m == len(kinds["q"]):
         return layout
@@ -119,7 +119,7 @@ def _of_dimension(layout: Layout, m: int | None, where: str) -> Layout:
 
 
 def _described(layout: Layout, dt: float | None) -> list[str]:
-    """Return a note on the meaning and unit assigned to each column."""
+    """Return notes on the meaning and unit assigned to each table column."""
 
     def named(columns: Sequence[str]) -> str:
         unit = (layout.units or {}).get(columns[0])
@@ -176,7 +176,7 @@ def _factors(layout: Layout, where: str) -> tuple[dict[str, float], list[str]]:
 
 
 def _flat_axis(arrays: Mapping[str, Any]) -> list[str]:
-    """Return a note on a last axis without motion."""
+    """Return a note if the last coordinate of all positions is constant, else an empty list."""
     q = np.asarray(arrays["q"])
     last_axis = q[..., -1]
     if q.shape[-1] < 2 or q.shape[0] < 2 or np.nanmax(last_axis) != np.nanmin(last_axis):
@@ -186,7 +186,7 @@ def _flat_axis(arrays: Mapping[str, Any]) -> list[str]:
 
 
 def _with_agents(frame: Any, layout: Layout, t: FloatArray | None, where: str) -> Layout:
-    """Return the layout with the agent column chosen among several: agent names recur at other times."""
+    """Return the layout with the agent column chosen among several candidates: agent names recur over time."""
     import pandas as pd
 
     if not layout.rivals or layout.agent is None or t is None:
@@ -266,7 +266,7 @@ def _read_dates(series: Any, clock: float | None, where: str, name: str) -> Floa
 
 
 def _instants(t: FloatArray, jitter: float | None) -> tuple[FloatArray, str]:
-    """Return the times with equal stamps for one instant, by default stamps that differ by rounding."""
+    """Return the times with nearly equal stamps made equal, and a note; by default within rounding."""
     stamps = np.unique(t)
     rounding = _ROUNDINGS * np.finfo(float).eps * float(np.abs(stamps).max())
     reach = rounding if jitter is None else ensure_nonnegative("jitter", jitter)

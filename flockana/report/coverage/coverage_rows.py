@@ -20,7 +20,7 @@ _MARK = "|"  # between columns; texts write a norm as ‖
 
 @dataclass(frozen=True)
 class Reference:
-    """Reference to a name in flockana, with its kind."""
+    """Reference to a name in flockana, such as a theorem or a scenario, with its kind."""
 
     kind: str  # one of `KINDS`
     name: str  # such as ``"flockana.Algorithm2"``, ``"os-1"``, ``"os-3/iv-barrier"`` or ``"01"``
@@ -37,7 +37,7 @@ class Reference:
 
 @dataclass(frozen=True)
 class Row:
-    """Item of a source with the references behind it."""
+    """Row of a coverage table: an item of a source, and the references to what covers the item in flockana."""
 
     place: str  # where it stands in the source: section, slide, equation, figure, theorem
     what: str  # what it is, in our words
@@ -70,7 +70,7 @@ class Source:
     rows: tuple[Row, ...]
 
     def count(self, standing: Standing) -> int:
-        """Return the number of rows with this standing."""
+        """Return the number of the source's coverage rows with the given standing."""
         return sum(row.standing == standing for row in self.rows)
 
 

@@ -7,7 +7,7 @@ from flockana.scenarios.option_checks import SOURCE
 
 
 def anchors(pages: Iterable[Page]) -> dict[str, str]:
-    """Return the ids in the report by reference; a theorem checked on several runs leads to the first."""
+    """Return HTML ids in the report by reference; a theorem checked on several runs leads to the first."""
     link: dict[str, str] = {}
     for page in pages:
         if isinstance(page, ScenarioPage):

@@ -10,7 +10,7 @@ _REFERENCES = ("carrillo-2017", "ahn-2012", "flockana")
 
 
 def _pair(name: str, decay: float, speed: float, end: float, expected: dict[str, Status]) -> Builder:
-    """Return two agents on a line, 1 apart, that approach."""
+    """Return the scenario builder of two agents on a line, 1 apart, that approach each other."""
     title = f"Two agents that approach at {speed:g} under the weight s^-{decay:g}"
     source_text = (
         f"Ours: two agents on a line, 1 apart, relative speed {speed:g}, K = ℓ = 1. For α = ½ they meet if it is 4 or "
@@ -22,7 +22,7 @@ def _pair(name: str, decay: float, speed: float, end: float, expected: dict[str,
 
 
 def _crowd(seed: int) -> Start:
-    """Return nine agents of a grid that fly towards its middle."""
+    """Return positions and velocities of nine agents near a grid that fly towards its middle."""
     rng = np.random.default_rng(seed)
     q = np.stack(np.meshgrid([-1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]), axis=-1).reshape(9, 2)
     return q + rng.uniform(-0.1, 0.1, (9, 2)), -4.0 * q

@@ -58,7 +58,7 @@ def _exact_sign(w: float, factor: tuple[float, float, float], x: float) -> int |
 
 
 def _sides(seen: Observed, x: float, w: float, integral: float) -> tuple[Hypothesis, Hypothesis]:
-    """Return the hypotheses that a pair reaches contact, w <= -integral, and that it is slower."""
+    """Return the hypotheses that a pair is fast enough for contact, w <= -integral, and that it is slower."""
     weight, error = seen.law.weight, 16.0 * EPS * (abs(w) + integral)
     margin_enclosure, text = Enclosure.around(w + integral, error), f"w(0) = {w:.6g}, the integral {integral:.6g}"
     name = "w(0) > -∫2a from 0 to x(0)"
@@ -119,7 +119,7 @@ def _meet(seen: Observed, needs: Needs, x: float, excess: float, factor: float) 
 
 
 def _apart(seen: Observed, needs: Needs, x: float, level: float) -> Claim:
-    """Return the claim that the distance stays at least min(x(0), x_∞), x_∞^(1−α) = level."""
+    """Return the claim that a pair's distance stays at least min(x(0), x_∞), where x_∞^(1−α) = level."""
     limit = max(level, 0.0) ** (1.0 / (1.0 - seen.law.weight.decay))
     distance, end = least_distance(seen), float(np.ptp(seen.run.q[-1]))
     margin = distance / min(x, limit) - 1.0 if limit > 0.0 else distance

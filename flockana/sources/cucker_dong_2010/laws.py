@@ -57,7 +57,7 @@ class CuckerDong(Law):
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """Weight function, and the repulsion with gain V."""
+        """Functions of the distance in the law: the alignment weight, and the repulsion with gain V."""
         return (LawFunction("the weight", self.weight, 0.0, 1.0), LawFunction("the repulsion", None, 1.0))
 
     @property

@@ -10,7 +10,7 @@ _NAMES = ("cucker-dong", *(f"cucker-dong:{claim}" for claim in ("functional", "a
 
 
 def _crossing(name: str, title: str, repulsion: float, expected: dict[str, Status]) -> Builder:
-    """Return two rows of three agents that fly at each other."""
+    """Return the scenario builder of two rows of three agents that fly at each other."""
     source_text = f"Ours: two rows of three agents that fly at each other, K = ℓ = 1, β = ¼, δ = ½, k = {repulsion:g}."
 
     def draw(seed: int) -> Start:

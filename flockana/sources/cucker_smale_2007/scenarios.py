@@ -12,7 +12,7 @@ _N = 12
 
 
 def _flock(name: str, beta: float, speed: float, expected: dict[str, Status]) -> Builder:
-    """Return twelve agents in the plane, with random velocities scaled to a given spread."""
+    """Return the scenario builder of twelve agents in the plane with random velocities of a given spread."""
     title = f"Twelve agents that match velocities alone, β = {beta:g}"
     source_text = (
         f"Ours: the law of Cucker and Smale in the form of Ha and Liu, K = 2, ℓ = 1, β = {beta:g}; positions "
@@ -30,7 +30,7 @@ def _flock(name: str, beta: float, speed: float, expected: dict[str, Status]) ->
 
 
 def _pair(name: str, speed: float, expected: dict[str, Status]) -> Builder:
-    """Return two agents on a line, 1 apart; π/4 is the critical relative speed."""
+    """Return the scenario builder of two agents on a line that separate; the critical speed is π/4."""
     title = f"Two agents that separate at {speed:g}; the critical speed is π/4"
     source_text = (
         "Ours: two agents on a line, 1 apart, the law of Cucker and Smale in the form of Ha and Liu, "

@@ -44,7 +44,7 @@ def _steps() -> tuple[tuple[str, str, DiscreteLaw, FloatArray], ...]:
 
 
 def _claim(name: str, words: str, step: DiscreteLaw, q: FloatArray) -> Claim:
-    """Compare the step with the margin; if the margin is only an upper bound, judge the multipliers at the step."""
+    """Return the claim that all modes decay at a source's time step, by the largest stable step or multipliers."""
     law: Any = step.continuous
     equilibrium = q if isinstance(law, MinimalFlocking) else find_equilibrium(law, q).q
     bound, dt = sampling_margin(step, equilibrium), step.dt

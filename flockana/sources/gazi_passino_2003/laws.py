@@ -84,7 +84,7 @@ class GaziPassino(VelocityLaw):
 
     @property
     def scales(self) -> Scales:
-        """Length √(c/2), and the time 1/a."""
+        """Scales of the law: length √(c/2), at which repulsion is largest, and time 1/a."""
         return Scales(sqrt(0.5 * self.c), 1.0 / self.attraction)
 
     @property
@@ -98,7 +98,7 @@ class GaziPassino(VelocityLaw):
         return (LawFunction("the repulsion", GaussianRepulsion(self.repulsion, self.c), 1.0),)
 
     def _pulls(self, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return q_j − q_i, the pull per difference, and its slope by the squared distance, of all pairs."""
+        """Return, for all pairs, q_j − q_i, its factor w = a − b exp(−s²/c), and the derivative of w by s²."""
         away = q[None] - q[:, None]
         push, _, weight_slope, _ = GaussianRepulsion(self.repulsion, self.c).inner(np.einsum("ijk,ijk->ij", away, away))
         return away, self.attraction + push, weight_slope
@@ -108,7 +108,7 @@ class GaziPassino(VelocityLaw):
         return np.asarray(np.einsum("ij,ijk->ik", pull, displacement))
 
     def slopes(self, t: float, q: FloatArray) -> Any:
-        """Return the blocks w 1 + 2 w' (q_j − q_i)(q_j − q_i)ᵀ of pairs, and minus their sums on the diagonal."""
+        """Return the Jacobian of the velocities by positions, of blocks w 1 + 2 w' (q_j − q_i)(q_j − q_i)ᵀ."""
         from scipy.sparse import csr_array
 
         (n, m), (away, pull, bend) = q.shape, self._pulls(q)

@@ -14,7 +14,7 @@ _APART = _ALL | vacuous("gazi-passino:collapse") | verified("gazi-passino:apart"
 
 
 def _swarm(name: str, title: str, n: int, repulsion: float, end: float, expected: dict[str, Status]) -> Builder:
-    """Return a swarm in the plane with a = 1 and c = 0.2 from a random start."""
+    """Return the scenario builder of a swarm in the plane with a = 1 and c = 0.2, from a random start."""
     law = GaziPassino(1.0, repulsion, 0.2)
     source_text = (
         f"Ours: the law of Gazi and Passino, a = 1, b = {repulsion:.6g}, c = 0.2; positions uniform in a square of 6."

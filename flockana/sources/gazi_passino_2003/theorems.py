@@ -26,7 +26,7 @@ def _centroid(seen: Observed, size: float, tolerances: Tolerances) -> Claim:
 
 
 def _rate(seen: Observed, size: float, bound: float) -> Claim:
-    """Return the claim that every agent enters the smaller ball at least at the rate aM."""
+    """Return the claim that the swarm's radius decays to its bound at least exponentially, at the rate aM."""
     law: GaziPassino = seen.law
     left = max(float(seen.radius.mid[0]) - bound, 0.0)
     limits = bound + left * np.exp(-law.attraction * seen.n * (seen.t - seen.t[0]))

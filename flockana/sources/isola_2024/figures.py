@@ -12,7 +12,7 @@ _SAMPLES = 271  # every other of the project's 540 iterations
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
-    """Draw the figures of any flock, and rank(A)/n over time."""
+    """Draw the standard figures of a run, and its connectivity measure rank(A)/n over time."""
     run = trajectory
     picks = np.unique(np.linspace(0, len(run.t) - 1, min(len(run.t), _SAMPLES)).round().astype(int))
     nets = [links(run.q[k], run.law.pair.range) for k in picks]

@@ -60,12 +60,12 @@ class MSNDiscretisation(DiscreteLaw):
 
     @property
     def alpha(self) -> AlphaInteraction:
-        """The pair law."""
+        """Pair interaction of the discretised law."""
         return self.law.alpha  # type: ignore[return-value]  # checked when made
 
     @property
     def gains(self) -> Gains:
-        """The gains."""
+        """Gains of the discretised law."""
         return self.law.gains
 
     def centre_system(self) -> "StateSpace | None":
@@ -85,7 +85,7 @@ class MSNDiscretisation(DiscreteLaw):
         return control.StateSpace(a, b, a[:1], b[:1], h, inputs=["q_r", "p_r"], outputs="q_c", states=["q", "p"])
 
     def step(self, t: float, q: FloatArray, p: FloatArray, memory: Arrays) -> States:
-        """Return the state after one iteration, unchecked; no memory, as the net follows from q."""
+        """Return positions, velocities, inputs and unchanged memory after one iteration, unchecked."""
         next_time, h = t + self.dt, self.dt
         if not self.in_place:
             u, _ = self.law.flow(next_time, q, p)

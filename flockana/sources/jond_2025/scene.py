@@ -13,13 +13,13 @@ from flockana.sources.jond_2025.laws.zone_flocking import ZoneFlocking
 
 
 def perceived_edges(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
-    """Return the world of the minimal model: its perceived edges."""
+    """Return what the player draws around a flock of the minimal model: the perceived edges of each frame."""
     data = [law.edge_data(run.q[k]) for k in (frames if law.edges is None else frames[:1])]
     return World(edges=tuple(np.column_stack([sample.tail, sample.head]).astype(np.int64) for sample in data))
 
 
 def zone_surroundings(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
-    """Return the world of zone-based flocking: obstacles, box and aliens."""
+    """Return what the player draws around a zone-based flock: obstacles, box and aliens."""
     around = law.world
     solids = tuple(obstacle for obstacle in around.obstacles if isinstance(obstacle, Sphere))
     outlines = [np.asarray(obstacle.vertices) for obstacle in around.obstacles if not isinstance(obstacle, Sphere)]

@@ -72,17 +72,17 @@ class DistanceFormation(VelocityLaw):
         ensure_in_flock("edges", self.edges, n)
 
     def _links(self, q: FloatArray) -> tuple[Any, Any, FloatArray]:
-        """Return the two ends of all links, and their differences."""
+        """Return the two agent indices of each link, and their position differences."""
         i, j = np.array(self.edges, dtype=np.int64).reshape(-1, 2).T
         return i, j, q[j] - q[i]
 
     def errors(self, q: FloatArray) -> FloatArray:
-        """Return ‖q_j − q_i‖² − d_ij² of each link."""
+        """Return the error of each link's squared length, ‖q_j − q_i‖² − d_ij²."""
         z = self._links(q)[2]
         return np.asarray(np.einsum("ek,ek->e", z, z) - np.square(self.lengths))
 
     def rows(self, q: FloatArray) -> FloatArray:
-        """Return R of shape (links, nm), half the slopes of the squared lengths: the law is q' = −k Rᵀ errors."""
+        """Return the rigidity matrix R of shape (links, nm): the law is q' = −k Rᵀ errors."""
         i, j, z = self._links(q)
         full_matrix, agents = np.zeros((len(z), *q.shape)), np.arange(len(z))
         full_matrix[agents, j], full_matrix[agents, i] = z, -z

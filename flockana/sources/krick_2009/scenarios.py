@@ -13,7 +13,7 @@ _OPEN = verified("distance-formation") | vacuous("distance-formation:formation",
 
 
 def _formation(name: str, title: str, law: DistanceFormation, places: object, expected: dict[str, Status]) -> Builder:
-    """Return a formation from given positions."""
+    """Return the builder of a scenario in which a formation starts from given positions."""
     source_text = "Ours, on Krick, Broucke and Francis: formation by squared lengths, k = 1. The start is fixed."
     q = np.array(places, dtype=float)
 

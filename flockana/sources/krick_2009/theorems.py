@@ -53,7 +53,7 @@ def _share(name: str, stated: str, seen: Observed, off: Enclosure, tolerances: T
 
 
 def _off_line(seen: Observed) -> Enclosure:
-    """Return the largest distance from the line of the start over time, in the frame of the centroid."""
+    """Return the agents' largest distance from their starting line at each time, relative to the centroid."""
     z = seen.run.q - seen.run.q.mean(axis=1, keepdims=True)
     start_q = z[0]
     direction = start_q[np.linalg.norm(start_q, axis=1).argmax()]

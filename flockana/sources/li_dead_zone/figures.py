@@ -8,7 +8,7 @@ from flockana.sources.li_dead_zone.laws.with_leaders import LedDeadZoneFlocking
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
-    """Draw the figures of any flock; captions of snapshots name the followers of each leader."""
+    """Draw the standard figures of a run, with a caption of the snapshots that explains stars and colours."""
     first_picture, *later_pictures = flock_pictures(trajectory)
     caption = (
         "Start, middle and end. Stars are the leaders; links join agents within 1.1 d1, in contact or nearly. The "

@@ -151,13 +151,13 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
 
     @property
     def seams(self) -> tuple[float, ...]:
-        """Ends of the dead zone and its ramps, and the range."""
+        """Distances at which the force changes its formula: ends of dead zone and ramps, and the range."""
         edges = {self.d1 - self.ramp, self.d1, self.d2, self.d2 + self.ramp}
         return tuple(sorted({self.r, *(s for s in edges if s < self.r)}))
 
     @property
     def feature(self) -> float:
-        """Length d₁ of repulsion; zone ends are watched as `surfaces`."""
+        """Narrowest length of the force, the range d₁ of repulsion; zone ends are watched as `surfaces`."""
         return self.d1
 
     @property
@@ -171,7 +171,7 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
         return float(_POTENTIAL(np.array([self.r]), self.par, self.panels)[0])
 
     def _tabulate(self) -> tuple[FloatArray, FloatArray]:
-        """Return kernel parameters, and Chebyshev panels of ψ on the ramps within range."""
+        """Return kernel parameters, and Chebyshev series of the potential ψ on its ramps within range."""
         edges = self.d1, self.d2, self.r, self.r_d
         par = np.array([self.eta, self.k_r, self.k_delta, self.k1, *edges, self.ramp, 0.0, 0.0])
         panels = np.zeros((0, 0))
@@ -199,11 +199,11 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
         return par, panels
 
     def action(self, s: Any) -> Any:
-        """Return f(ρ), the paper's φ_z without its direction; negative repels."""
+        """Return the scalar force f(ρ), the paper's φ_z without direction; negative values repel."""
         return evaluate(_ACTION, s, self.par)
 
     def jumps(self) -> tuple[Jump, ...]:
-        """Return the discontinuities of the source's F = dψ/dρ: at r, and without a ramp at d₁ and d₂."""
+        """Return the jumps of the pair force F = dψ/dρ: at r, and without a ramp at d₁ and d₂."""
         jumps = []
         for name, distance in (("d1", self.d1), ("d2", self.d2), ("r", self.r)):
             value_below, above = _FORCE(np.nextafter(distance, [0.0, inf]), self.par).tolist()
@@ -212,7 +212,7 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
         return tuple(jumps)
 
     def least_distance(self, energy: float) -> float:
-        """Return a lower bound of all distances of a flock with at most this energy.
+        """Return a lower bound of all distances in a flock with at most a given energy.
 
         For η > 0 and no ramp 1/(√η sinh(H/2k_r + asinh(1/(√η d₁)))), for η = 0 d₁ exp(−H/2k_r): positive, but
         exponentially small. k_δ is left out, and the ramp is taken as if all of it were free of force.
@@ -237,7 +237,7 @@ class DeadZoneInteraction(Tabulated, PairInteraction):
 
 
 def _fractions(ramp: float, d1: float) -> FloatArray:
-    """Return offsets from d₁ inwards, 0 to ramp, as panel ends refined towards the pole at 0."""
+    """Return Chebyshev panel ends as distances inwards from d₁, 0 to `ramp`, finer towards the pole at 0."""
     marks, left = [0.0], d1
     while left - (d1 - ramp) > 0.5 * left:
         left *= 0.5

@@ -11,7 +11,7 @@ from flockana.sources.li_dead_zone.laws.with_leaders import LedDeadZoneFlocking
 
 
 def leaders_and_groups(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
-    """Return the world of the dead-zone law with leaders: stars, and a colour for each group."""
+    """Return what the player draws for the dead-zone law: leaders as stars, and a colour for each group."""
     groups = np.zeros(run.n, dtype=int)
     for number, members in enumerate(law.ties.members):
         groups[members] = number

@@ -35,25 +35,25 @@ def _pieces(rho: sp.Expr, beyond: sp.Expr, near: sp.Expr, between: sp.Expr, far:
 
 
 def action(rho: sp.Expr = RHO, *, ramp: sp.Expr = sp.S.Zero) -> sp.Expr:
-    """Return f(rho): negative repels, 0 on [d_1, d_2] and from r on."""
+    """Return the scalar force f(rho): < 0 where repulsive, 0 on [d_1, d_2] and from r on."""
     inner, outer = (sp.S.One,) * 2 if ramp == 0 else (sp.Min(1, (D_1 - rho) / ramp), sp.Min(1, (rho - D_2) / ramp))
     return _pieces(rho, sp.S.Zero, -inner * repulsion(rho), sp.S.Zero, outer * attraction(rho))
 
 
 def force(rho: sp.Expr = RHO, *, ramp: sp.Expr = sp.S.Zero) -> sp.Expr:
-    """Return F(rho) = f rho/sqrt(1 + eta rho^2) + k_1 rho within r, 0 beyond."""
+    """Return the pair force F(rho) = f rho/sqrt(1 + eta rho^2) + k_1 rho within r, 0 beyond."""
     return action(rho, ramp=ramp) * direction(rho) + sp.Piecewise((K_1 * rho, rho < R), (sp.S.Zero, True))
 
 
 def repulsive_primitive(s: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp.Expr:
-    """Return P_r with dP_r/ds = (2k_r/s^2 + k_delta) s/sqrt(1 + eta s^2), for eta > 0 or eta = 0."""
+    """Return the antiderivative P_r of (2k_r/s^2 + k_delta) s/sqrt(1 + eta s^2), for eta > 0 or eta = 0."""
     if eta == 0:
         return 2 * K_R * sp.log(s) + K_DELTA * s**2 / 2
     return -2 * K_R * sp.asinh(1 / (sp.sqrt(eta) * s)) + K_DELTA * sp.sqrt(1 + eta * s**2) / eta
 
 
 def attractive_primitive(s: sp.Expr = RHO, *, eta: sp.Expr = ETA_POSITIVE) -> sp.Expr:
-    """Return P_a with dP_a/ds = (2k_r/(r_d - s)^2 + k_delta) s/sqrt(1 + eta s^2), for eta > 0 or eta = 0."""
+    """Return the antiderivative P_a of (2k_r/(r_d - s)^2 + k_delta) s/sqrt(1 + eta s^2), for eta >= 0."""
     if eta == 0:
         return 2 * K_R * (R_D / (R_D - s) + sp.log(R_D - s)) + K_DELTA * s**2 / 2
     big, root = 1 + eta * R_D**2, sp.sqrt(1 + eta * s**2)
@@ -92,7 +92,7 @@ def derive_potential() -> Derivation:
 
 
 def jumps() -> dict[str, tuple[sp.Expr, sp.Expr]]:
-    """Return F just below and just above d_1, d_2 and r, without ramp, for d_2 < r."""
+    """Return the pair force F just below and just above d_1, d_2 and r, without ramp, for d_2 < r."""
     inner_force, outer_force = repulsion() * direction(), attraction() * direction()
     pull = K_1 * RHO
     return {

@@ -21,7 +21,7 @@ _DESIGNS: tuple[tuple[str, int, dict[str, Any], str], ...] = (
 
 
 def _design(name: str, n: int, options: dict[str, Any], words: str) -> Claim:
-    """Return the claim on the rate gained by a search over gains; a small gain refutes nothing."""
+    """Return the claim that per-agent gains from a search speed up decay; a small speed-up refutes nothing."""
     alpha = AlphaInteraction()
     problem = gain_problem(hexagonal_spiral(n, alpha.d), alpha=alpha, gains=Gains(), **options)
     best = design_gains(problem, starts=1)

@@ -35,7 +35,7 @@ def ensure_averages(name: str, value: Any) -> tuple[tuple[tuple[float, ...], ...
 
 
 def ensure_steps(name: str, value: Any, least: int, count: int) -> tuple[int, ...]:
-    """Return one whole number for each net, each at least `least`."""
+    """Return one whole number of steps for each net, each at least `least`; raise on other values."""
     steps = np.asarray(value)
     if steps.shape != (count,) or steps.dtype.kind not in "iu" or (steps < least).any():
         expectation = f"{count} whole numbers >= {least}, one for each net"

@@ -20,7 +20,7 @@ def _links(n: int, *heard: tuple[int, int]) -> np.ndarray:
 
 
 def _net(name: str, title: str, law: NetAveraging, expected: dict[str, Status], steps: int) -> Builder:
-    """Return agents at random in a plane, or three on a line at 0, 0 and 1 for growing rounds."""
+    """Return the builder of a scenario of averaging agents, at random in a plane, or three on a line."""
     source_text = "Ours, on Moreau, and Ren and Beard: agents average in halves with those that they hear."
 
     def draw(seed: int) -> Start:

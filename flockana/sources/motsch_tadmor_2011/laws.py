@@ -59,11 +59,11 @@ class MotschTadmor(Law):
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """Influence function of the distance."""
+        """Influence of one agent on another as a function of their distance."""
         return (LawFunction("the influence", self.weight, 0.0, self.gain, mean=True),)
 
     def influences(self, q: FloatArray) -> FloatArray:
-        """Return a_ij, shape (n, n): each row sums to 1, including a_ii."""
+        """Return the normalised influences a_ij, shape (n, n), whose rows sum to 1, a_ii included."""
         phi = self.weight.adjacency(np.linalg.norm(q[:, None] - q[None], axis=2))
         return np.asarray(phi / phi.sum(axis=1, keepdims=True))
 

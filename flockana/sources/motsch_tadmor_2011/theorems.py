@@ -20,7 +20,7 @@ def _series(seen: Observed, of: str, error: np.ndarray) -> Enclosure:
 
 
 def _checked(seen: Observed, power: float, name: str) -> Checked:
-    """Return the consequences of d_V(0) < α∫φ^k, as velocities contract at αφ(d_X) and φ <= 1."""
+    """Return the hypothesis d_V(0) < α∫φ^k and claims from it, as velocities contract at αφ(d_X)."""
     law: MotschTadmor = seen.law
     rate = AlignmentRate(RationalWeight(1.0, power * law.weight.decay, law.weight.length), law.gain, 1.0)
     x, v = _series(seen, "q", seen.shape_error), _series(seen, "p", seen.speed_error)

@@ -74,7 +74,7 @@ class PushTerm(Term):
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """The extra repulsion's function of the distance, whose facts are asked."""
+        """Extra repulsion of close pairs as a function of their distance."""
         return (LawFunction("the push", Push(self.alpha, self.min_distance, self.factor), self.stiffness),)
 
     def act(self, t: float, q: FloatArray, p: FloatArray, u: FloatArray) -> float:  # noqa: D102

@@ -35,7 +35,7 @@ def _integrator(law: Algorithm1 | Algorithm2) -> dict[str, Any]:
 
 
 def _other(run: Trajectory) -> Trajectory:
-    """Run the same start with the extra repulsion switched on or off."""
+    """Return the run from the same start with the extra repulsion of close pairs switched on or off."""
     law = run.law
     shared_options = {"alpha": law.alpha, "gains": law.gains} | ({} if law.target is None else {"target": law.target})
     other_law = _SWITCH[type(law)](**shared_options)
@@ -44,7 +44,7 @@ def _other(run: Trajectory) -> Trajectory:
 
 @findings.report("push", "a tenfold push below 0.05 keeps agents apart")
 def _push(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Report that the push keeps agents farther apart; vacuous where it never acts."""
+    """Report that the extra repulsion keeps agents farther apart; vacuous where no pair comes close enough."""
     contact_times = contacts(run.t, run.q, run.p, run.u, tol=MIN_DISTANCE)
     if not contact_times:  # then the run is the same with the push and without it
         closest = run.closest_approach().distance
@@ -104,7 +104,7 @@ def _goal(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 @findings.report("relaxes", "‖u_α‖ shrinks to about a hundredth")
 def _pairs_relax(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Report the printed fall of u_α from about 5 to about 0.03, as a mean over all agents."""
+    """Report the printed fall of the pair force u_α from about 5 to about 0.03, averaged over agents."""
     law = run.law
     first, last = (
         float(np.linalg.norm(law.terms[0].pair.forces(run.q[k], run.p[k], **_UNIT_FORCE)[0], axis=1).mean())
@@ -187,7 +187,7 @@ def _algorithm2(seed: int = 0, push: bool = False) -> Scenario:
 
 
 def _map(flow: Callable[..., Scenario], dt: float) -> Callable[[int], Scenario]:
-    """Return the notebook's run as published: its own steps, with extra repulsion."""
+    """Return the builder of the notebook's run as published: with its own steps and extra repulsion."""
 
     def build(seed: int = 0) -> Scenario:
         item = flow(seed, push=True)

@@ -56,7 +56,7 @@ class AverageConsensus(VelocityLaw):
         return -self.laplacian @ q
 
     def slopes(self, t: float, q: FloatArray) -> Any:
-        """Return −L for each component of space, sparse."""
+        """Return the Jacobian of q' = −Lq: −L for each component of space, sparse."""
         from scipy.sparse import csr_array, eye_array, kron
 
         return -csr_array(kron(csr_array(self.laplacian), eye_array(q.shape[1]), format="csr"))

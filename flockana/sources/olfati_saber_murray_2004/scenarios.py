@@ -13,7 +13,7 @@ _OTHER = verified("average-consensus", *_NAMES) | vacuous(_NAMES[1], _NAMES[3])
 
 
 def _net(name: str, title: str, nets: list[np.ndarray], expected: dict[str, Status]) -> Builder:
-    """Return a net, or switching nets, with agents at random in a plane."""
+    """Return the builder of a scenario of consensus on one or several nets, with agents at random in a plane."""
     laws = [AverageConsensus(weights) for weights in nets]
     law = laws[0] if len(nets) == 1 else VelocityInTurn(laws, _LENGTHS)
 

@@ -68,7 +68,7 @@ class CyclicPursuit(VelocityLaw):
         return np.asarray((np.roll(q, -1, axis=0) - q) @ self._turn.T)
 
     def slopes(self, t: float, q: FloatArray) -> Any:
-        """Return (S − 1) ⊗ k R(θ), S the shift to the next agent, sparse."""
+        """Return the Jacobian of the law, (S − 1) ⊗ k R(θ), sparse, S the shift to the next agent."""
         from scipy.sparse import csr_array, kron
 
         return csr_array(kron(np.roll(np.eye(len(q)), 1, axis=1) - np.eye(len(q)), self._turn))

@@ -12,7 +12,7 @@ _SPREAD = _ALL | verified("cyclic-pursuit:spread") | vacuous("cyclic-pursuit:mee
 
 
 def _ring(name: str, title: str, n: int, angle: float, end: float, expected: dict[str, Status]) -> Builder:
-    """Return agents in cyclic pursuit with gain 1 from a random start."""
+    """Return the builder of a scenario of agents in cyclic pursuit with gain 1 from a random start."""
     law = CyclicPursuit(1.0, angle)
     source_text = f"Ours, on Pavone and Frazzoli: k = 1, θ = {angle:g}°, 180°/n = {180.0 / n:g}°; positions normal."
 

@@ -75,7 +75,7 @@ def _few(seed: int = 0) -> Scenario:
 
 
 def _one_informed(seed: int = 0) -> Scenario:
-    """Return erratum E13 with one informed agent, in the frame of a leader that moves with the flock."""
+    """Return the scenario of erratum E13 with one informed agent, its leader at the flock's mean velocity."""
     alpha = AlphaInteraction(a=5e4, b=5e4)
     speed = float(np.sqrt(5.6 * _C_STAR))
     gains = Gains(1.0, 1.0, 0.0, 0.0, (0.01, 0.0, 0.0), (0.01, 0.0, 0.0))
@@ -124,7 +124,7 @@ def _varying(name: str, title: str, *, feedforward: bool) -> Builder:
 
 @report("informed-follow", "all informed agents adopt the leader's velocity")
 def _some_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Report that all informed agents follow at the end."""
+    """Report that all informed agents follow the leader's velocity at the end."""
     is_informed = np.asarray(run.law.gains.c1_gamma) > 0.0
     count, of = int(following(run)[is_informed].sum()), int(is_informed.sum())
     text = (
@@ -135,7 +135,7 @@ def _some_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 @report("most-follow", "more than half of all agents follow")
 def _most_follow(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Report that more than half of all agents follow at the end."""
+    """Report that more than half of all agents follow the leader's velocity at the end."""
     count = int(following(run).sum())
     text = f"{count} of {run.n} agents move as the leader does"
     return finding(count - run.n // 2 - 0.5, text, computed=count, stated=f"more than {run.n // 2}")

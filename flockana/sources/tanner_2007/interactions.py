@@ -53,13 +53,13 @@ class LogPotential(DistanceFunction):
         return self.d
 
     def energy(self, s: Any) -> Any:
-        """Return V at distances > 0 (see `DistanceFunction`)."""
+        """Return the potential V at given distances > 0."""
         x = self.d**2 / np.square(np.asarray(s, dtype=np.float64))
         values = self.strength * (x - 1.0 - np.log(x))
         return float(values) if np.ndim(s) == 0 else values
 
     def inner(self, s2: FloatArray) -> InnerValues:
-        """Return V′(s)/s, the adjacency 1 of a joined pair, and their slopes by the squared distance.
+        """Return V′(s)/s and the adjacency 1 of a pair, and the derivatives of each by squared distance.
 
         Parameters
         ----------
@@ -70,7 +70,7 @@ class LogPotential(DistanceFunction):
         return 2.0 * self.strength * (1.0 - rest) / s2, one, 2.0 * self.strength * (2.0 * rest - 1.0) / s2**2, 0.0 * one
 
     def nearest(self, energy: float) -> float:
-        """Return the distance below d with a given value of V.
+        """Return the distance below d at which the potential V has a given value.
 
         Parameters
         ----------

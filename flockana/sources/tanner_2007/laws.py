@@ -92,7 +92,7 @@ class FixedNetFlocking(_MatchingLaw):
 
     @property
     def functions(self) -> tuple[LawFunction, ...]:
-        """Potential along the edges, with adjacency 1."""
+        """Potential of linked pairs as a function of their distance, with adjacency 1."""
         return (LawFunction("the link potential", self.potential, 1.0, self.k2, edges=self.edges),)
 
     @cached_property
@@ -164,7 +164,7 @@ class ProximityFlocking(_MatchingLaw, SwitchedLaw):
 
     @property
     def surfaces(self) -> tuple[float, ...]:
-        """Switching distance R."""
+        """Switching distance of the force: the range R."""
         return (self.r,)
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:  # noqa: D102
@@ -172,7 +172,7 @@ class ProximityFlocking(_MatchingLaw, SwitchedLaw):
         ensure_apart(q, "the force of the logarithmic potential is infinite there")
 
     def pieces(self, q: FloatArray) -> Pieces:
-        """Return 0 for every pair within R and 1 beyond."""
+        """Return the branch of the force for every pair: 0 within distance R, 1 beyond."""
         return np.where(_distances(q) < self.r, _NEAR, _FAR).astype(np.int8)
 
     def piece_flow(self, pieces: Pieces, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:  # noqa: D102
@@ -198,7 +198,7 @@ class ProximityFlocking(_MatchingLaw, SwitchedLaw):
 
 
 def _pairs_within(pieces: Pieces, n: int) -> Ends:
-    """Return the index pairs (i, j) assigned to the piece within R."""
+    """Return the index pairs (i, j) marked as nearer than the range R."""
     i, j = np.triu_indices(n, 1)
     is_near = pieces == _NEAR
     return i[is_near], j[is_near]

@@ -14,7 +14,7 @@ _SETTLED = 1e-3  # of the first span of headings: until it falls below there is 
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
-    """Draw the figures of any flock at start, middle, end; headings, connectivity and heading span."""
+    """Draw the flock at start, middle and end, and its headings, connectivity and heading span over time."""
     early_run = trajectory.window(float(trajectory.t[0]), _until(trajectory))
     times = float(trajectory.t[0]), float(early_run.t[len(early_run.t) // 2]), float(trajectory.t[-1])
     windows = windows_of(trajectory)
@@ -40,7 +40,7 @@ def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
 
 
 def _until(run: Trajectory) -> float:
-    """Return the time until which headings visibly differ and the first windows end."""
+    """Return the last time at which headings visibly differ, or the end of the first windows if later."""
     span = run.metric("heading_spread")
     late_samples = np.flatnonzero(span > _SETTLED * span[0])
     windows = windows_of(run)[:4]

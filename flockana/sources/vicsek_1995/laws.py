@@ -130,7 +130,7 @@ class HeadingAveraging(DiscreteLaw):
         return pairs[np.linalg.norm(q[pairs[:, 1]] - q[pairs[:, 0]], axis=1) <= self.range]
 
     def start(self, q: FloatArray, p: FloatArray) -> Arrays:
-        """Return the headings of a start in [zero, zero + 2π); with noise, also step 0."""
+        """Return as memory the initial headings in [zero, zero + 2π), and with noise the step number 0."""
         heading = self.zero + np.mod(np.arctan2(p[:, 1], p[:, 0]) - self.zero, _TURN)
         return {"heading": heading} | ({"step": np.array(0.0)} if self.noise else {})
 
@@ -147,7 +147,7 @@ class HeadingAveraging(DiscreteLaw):
         return q + self.dt * before, velocities, (velocities - before) / self.dt, next_memory | {"heading": turned}
 
     def averaging_matrix(self, q: FloatArray, heading: FloatArray) -> Any:
-        """Return the derivative of the next headings by the headings.
+        """Return the Jacobian matrix of one step: derivatives of next headings by present ones.
 
         Parameters
         ----------

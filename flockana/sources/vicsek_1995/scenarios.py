@@ -15,7 +15,7 @@ _SHAKEN = 0.05  # of r and of a radian: what chance adds to each coordinate and 
 
 
 def _group(centre: float, heading: float, generator: np.random.Generator) -> tuple[FloatArray, FloatArray]:
-    """Return two by three agents, _SIZE r apart, near one heading; r = 1."""
+    """Return positions and headings of two by three agents on a perturbed grid, nearly aligned."""
     grid = _SIZE * np.array([[x, y] for x in (-0.5, 0.5) for y in (-1.0, 0.0, 1.0)]) + (centre, 0.0)
     start_noise = generator.uniform(-_SHAKEN, _SHAKEN, (len(grid), 3))
     return grid + start_noise[:, :2], heading + start_noise[:, 2]

@@ -11,7 +11,7 @@ from flockana.sources.vicsek_1995.laws import HeadingAveraging
 
 
 def neighbour_links(law: Any, run: Trajectory, frames: npt.NDArray[np.intp]) -> World:
-    """Return the world of averaged headings: links between neighbours."""
+    """Return what the player draws for averaged headings: links between neighbours in each frame."""
     return World(edges=tuple(np.asarray(law.links(run.q[k]), dtype=np.int64) for k in frames))
 
 

@@ -70,7 +70,7 @@ class SafetyFilter(WrappingLaw):
             raise ArgumentError(f"agents {i[same[0]]} and {j[same[0]]} are at one place: expected distinct places")
 
     def barriers(self, q: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return h, the unit vectors from j to i, and the lower bound of their product with u_i − u_j, per i < j."""
+        """Return h, unit vectors from j to i, and lower bounds of u_i − u_j along them, for pairs i < j."""
         (i, j), c = np.triu_indices(len(q), 1), 2.0 * self.acceleration_limit
         x, v = q[i] - q[j], p[i] - p[j]
         r = np.linalg.norm(x, axis=1)
@@ -100,7 +100,7 @@ class SafetyFilter(WrappingLaw):
 
 
 def _least_change(along: FloatArray, pairs: Any, lack: FloatArray, shape: tuple[int, ...]) -> FloatArray:
-    """Return the shortest x with along · (x_i − x_j) >= lack for each pair (Lawson and Hanson's LDP)."""
+    """Return the smallest input changes x with along · (x_i − x_j) >= lack per pair (Lawson and Hanson)."""
     from scipy.optimize import nnls
 
     rows, unit = np.zeros((len(lack), *shape)), float(lack.max())

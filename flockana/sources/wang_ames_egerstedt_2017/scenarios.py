@@ -11,7 +11,7 @@ _LATE = vacuous("safety-filter", "safety-filter:apart", "safety-filter:braking")
 
 
 def _pulled(name: str, title: str, start: Start, expected: dict[str, Status], end: float = 8.0) -> Builder:
-    """Return agents on a complete net, drawn together under the filter."""
+    """Return the builder of a scenario of agents drawn together on a complete net under the safety filter."""
     n = len(start[0])
     law = SafetyFilter(NetConsensus(np.ones((n, n)) - np.eye(n), 0.3, 0.3), distance=1.0)
     source = "Ours, on Wang, Ames and Egerstedt: consensus of positions, kept apart by the filter; D = α = γ = 1."

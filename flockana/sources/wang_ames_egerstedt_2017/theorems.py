@@ -11,7 +11,7 @@ _PROOF = "safety-filter"
 
 
 def _at_start(law: SafetyFilter, q: FloatArray, p: FloatArray) -> tuple[Enclosure, Enclosure]:
-    """Return h and r - D of all pairs at the start, with rounding errors."""
+    """Return the barrier h and the excess distance r - D of all pairs at the start, with rounding errors."""
     i, j = np.triu_indices(len(q), 1)
     h, size = law.barriers(q, p)[0], 16.0 * EPS
     r, speed = np.linalg.norm(q[i] - q[j], axis=1), np.abs(p[i]).sum(axis=1) + np.abs(p[j]).sum(axis=1)

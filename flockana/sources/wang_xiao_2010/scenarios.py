@@ -7,7 +7,7 @@ from flockana.sources.wang_xiao_2010.laws import FiniteTimeAlignment
 
 
 def _net(name: str, title: str, law: FiniteTimeAlignment, n: int, end: float, expected: dict[str, Status]) -> Builder:
-    """Return agents on a net with a random start."""
+    """Return the builder of a scenario of agents on a given net with a random start."""
     source = f"Ours, on Wang and Xiao: u_i = Σ_j sig(p_j - p_i)^α over links, α = {law.exponent:g}; a random start."
 
     def draw(seed: int) -> Start:

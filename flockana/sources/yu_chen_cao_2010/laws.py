@@ -109,7 +109,7 @@ class NetConsensus(HearingLaw):
         return 0.5 * self.position * float(np.sum(q * (self.laplacian @ q))) + 0.5 * float(np.sum(v * v))
 
     def derivatives(self, t: float, q: FloatArray, p: FloatArray) -> Any:
-        """Return −αL and −βL for each component of space, sparse."""
+        """Return ∂u/∂q = −αL and ∂u/∂p = −βL for each component of space, sparse."""
         from scipy.sparse import csr_array, eye_array, kron
 
         full_matrix = csr_array(kron(csr_array(self.laplacian), eye_array(q.shape[1]), format="csr"))

@@ -10,7 +10,7 @@ _NEVER = vacuous("net-consensus:consensus") | verified("net-consensus", "net-con
 
 
 def _net(name: str, title: str, law: NetConsensus, expected: dict[str, Status], span: float = 40.0) -> Builder:
-    """Return a net whose agents start at random."""
+    """Return the builder of a scenario of agents on a given net with a random start."""
     source = f"Ours, on Ren and Atkins: u = -L(αq + βp), α = {law.position:g}, β = {law.velocity:g}; a random start."
 
     def draw(seed: int) -> Start:

@@ -61,7 +61,7 @@ def _consensus(seen: Observed, needs: Needs) -> Claim:
 
 
 def _never(gains: Hypothesis, root: Hypothesis, above: Hypothesis | None) -> Claim:
-    """Return the claim that some start never agrees, vacuous if the conditions are met."""
+    """Return the claim that agents do not agree from some start, vacuous if the conditions are met."""
     missed = root if above is None else above
     opposite_status = {"met": "unmet", "unmet": "met", "assumed": "assumed"}[missed.status]
     requirement = Hypothesis(f"not: {missed.name}", opposite_status, detail=missed.detail)  # type: ignore[arg-type]

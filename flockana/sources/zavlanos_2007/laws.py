@@ -60,14 +60,14 @@ class LinkKeeping(SumOfTerms):
 
     @cached_property
     def tension(self) -> FormulaInteraction:
-        """Potential ψ and adjacency 1, as a formula."""
+        """Pair interaction of links: the potential ψ(s) = k s²/(r − s), with adjacency 1."""
         return FormulaInteraction(
             "k*s**2/(r - s)", adjacency_formula="1", r=self.r, d=0.5 * self.r, parameters=(("k", self.k),)
         )
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """Term of the links."""
+        """Terms of the law: the forces along its links."""
         return (LinkTerm(self.tension, self.links, 1.0, self.c),)
 
     @property
@@ -77,12 +77,12 @@ class LinkKeeping(SumOfTerms):
 
     @property
     def poles(self) -> tuple[float, ...]:
-        """Distance r, which no link may reach."""
+        """Distances at which the potential is infinite: r, which no link may reach."""
         return (self.r,)
 
     @property
     def pole_pairs(self) -> tuple[tuple[int, int], ...]:
-        """Linked pairs, to which the pole applies."""
+        """Pairs of linked agents, whose potential is infinite at the distance r."""
         return self.links
 
     def check_agents(self, n: int) -> None:
@@ -90,7 +90,7 @@ class LinkKeeping(SumOfTerms):
         ensure_in_flock("links", self.links, n)
 
     def check_start(self, q: FloatArray, p: FloatArray) -> None:
-        """Raise if a link is as long as r, the pole of the tension."""
+        """Raise unless every link is shorter than r, where the potential is infinite."""
         super().check_start(q, p)
         for (i, j), distance in zip(self.links, self.lengths(q), strict=True):
             if distance >= self.r:

@@ -10,7 +10,7 @@ _REFERENCES = ("zavlanos-2007", "ji-egerstedt-2007")
 
 
 def _chain(seed: int = 0) -> Scenario:
-    """Return six agents in a chain, the outer ones moving outwards."""
+    """Return the scenario of six agents linked in a chain, the outer ones moving outwards."""
     q = np.array([[0.0, 0.0], [0.6, 0.1], [1.2, 0.0], [1.8, 0.1], [2.4, 0.0], [3.0, 0.1]])
     p = np.array([[-1.5, 0.4], [0.0, -0.6], [0.2, 0.5], [0.1, -0.5], [-0.3, 0.6], [1.5, -0.4]])
     title = "A chain of six agents, thrown apart, that stays connected"
@@ -24,7 +24,7 @@ def _chain(seed: int = 0) -> Scenario:
 
 
 def _pairs(seed: int = 0) -> Scenario:
-    """Return two unlinked pairs that move apart."""
+    """Return the scenario of two pairs of linked agents, not linked to each other, that move apart."""
     q = np.array([[0.0, 0.0], [0.5, 0.0], [0.0, 0.9], [0.5, 0.9]])
     p = np.array([[0.3, -1.0], [-0.3, -1.0], [0.3, 1.0], [-0.3, 1.0]])
     title = "Two linked pairs without a link between them: they separate"

@@ -12,7 +12,7 @@ from flockana.theorems.theorem_toolkit import Enclosure, Observed, condition, la
 def _invariant(
     seen: Observed, psi: AlignmentRate, x: Enclosure, w: Enclosure, needs: list[Hypothesis], tolerances: Tolerances
 ) -> Claim:
-    """Return the claim that w + ∫λψ is conserved."""
+    """Return the claim that w + ∫λψ is conserved, where w is the relative velocity of a pair."""
     start = float(x.mid[0])
     passed_integral = x.rising(np.vectorize(lambda at: psi.between(start, at), otypes=[float])).scaled_out(QUADRATURE)
     deviation = abs((w + passed_integral) / w[0] - 1.0)
@@ -26,7 +26,7 @@ def _invariant(
 
 
 def _side(name: str, need: Hypothesis, needs: Needs, computed: float, stated: str, text: str) -> Claim:
-    """Return the claim for one side of the threshold, vacuous on the other."""
+    """Return the claim for pairs on one side of the critical speed; vacuous for pairs on the other."""
     if need.status == "unmet":
         return vacuous(name, need)
     claim = limit_claim(name, [*needs, need], computed=computed, stated=stated, proof="cucker-smale")

@@ -90,7 +90,7 @@ def _system() -> Builder:
 
 
 def _peers(name: str, title: str, *, coupling: float) -> Builder:
-    """Return peers whose copies agree in position, but in velocity only within each half of the flock."""
+    """Return the scenario builder of agents with γ-agent copies that differ in velocity between two halves."""
     damping = 2.0 * np.sqrt(coupling)
     coupling_text = f"Each copy is drawn to the mean of all by k₁ = {coupling:g}, k₂ = {damping:g}."
     source_text = (

@@ -23,7 +23,7 @@ def _morse() -> FormulaInteraction:
 
 
 def _follows(seed: int = 0) -> Scenario:
-    """Return twelve agents under Algorithm 2 with Morse's potential, spread over a disc."""
+    """Return the scenario of twelve agents that follow a γ-agent, under Algorithm 2 with Morse's potential."""
     generator = np.random.default_rng(seed)
     grid = 8.0 * np.array([(i, j) for i in range(4) for j in range(3)], dtype=np.float64)
     title = "Twelve agents with Morse's potential follow a γ-agent"
@@ -38,7 +38,7 @@ def _follows(seed: int = 0) -> Scenario:
 
 
 def _holds(seed: int = 0) -> Scenario:
-    """Return four agents under Algorithm 1 with too little energy to separate."""
+    """Return the scenario of four agents under Algorithm 1 with too little energy to separate."""
     generator = np.random.default_rng(seed)
     rhombus = 6.0 * np.array([(0.0, 0.0), (1.0, 0.0), (0.5, 0.75**0.5), (1.5, 0.75**0.5)])
     title = "Four agents with Morse's potential that have too little energy to part"

@@ -15,7 +15,7 @@ _END = 60.0
 
 
 def _phase(seed: int = 0, ratio: float = 0.01, density: float = 0.3, n: int = 40) -> Scenario:
-    """Return a start that flocks; a weak γ-agent fragments the flock, a strong one collapses it."""
+    """Return a scenario of Algorithm 2 from a random start, by ratio c1γ/c1α, density and number of agents."""
     ratio, density = ensure_nonnegative("ratio", ratio), ensure_positive("density", density)
     alpha, c1_gamma = AlphaInteraction(), ratio * _C1_ALPHA
     gains = Gains(c1_alpha=_C1_ALPHA, c2_alpha=2.0 * sqrt(_C1_ALPHA), c1_gamma=c1_gamma, c2_gamma=2.0 * sqrt(c1_gamma))

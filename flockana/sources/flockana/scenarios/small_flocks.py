@@ -24,7 +24,7 @@ from flockana.sources.geschwender_2016 import rhombus_with_double_agent
 
 
 def _head_on(name: str, apart: float, share: float, expected: dict[str, Status]) -> Builder:
-    """Return two approaching agents on a line, with a given share of c* as energy."""
+    """Return the scenario builder of two approaching agents on a line, with a given share of c* as energy."""
     law, q = Algorithm1(), np.array([[0.0], [apart]])
 
     def velocities() -> FloatArray:
@@ -42,7 +42,7 @@ def _head_on(name: str, apart: float, share: float, expected: dict[str, Status])
 
 
 def _five_agents(seed: int = 0) -> Scenario:
-    """Return erratum E3: a start next to the basin of the smallest known strained minimum."""
+    """Return the scenario on erratum E3 that starts next to the basin of the smallest known strained minimum."""
     law = Algorithm1(gains=Gains(c2_alpha=20.0))
     q = rhombus_with_double_agent(law.alpha.length)
     q[4] += (0.0, 0.5)

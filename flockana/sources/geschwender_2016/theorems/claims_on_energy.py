@@ -28,7 +28,7 @@ def rises(energy: Enclosure) -> Enclosure:
 
 
 def printed_energy(seen: Observed, excess: Callable[[Trajectory], FloatArray]) -> Enclosure:
-    """Return the true energy plus a given excess, at each sample."""
+    """Return the energy as printed by a source, the true energy plus a given excess, at each sample."""
 
     def rounding(run: Trajectory) -> FloatArray:
         return energy_error(run.law, run.q, run.p, np.abs(run.energy()) + np.abs(excess(run)))

@@ -14,7 +14,7 @@ PROOF = "deviation-energy"
 
 
 def _jump(name: str, energy: Callable[[float], float], r: float, stated: float, symbol: str) -> Claim:
-    """Return the jump of an energy at the range."""
+    """Return the claim that an energy jumps at the interaction range by the stated value."""
     within, at = energy(r * (1.0 - _NEAR)), energy(r)
     scale = max(within, at)
     return of_state(name, 32.0 * _NEAR * scale - abs(within - at - stated), _ROUNDING * scale, proof=PROOF).described(
@@ -29,7 +29,7 @@ def _jump(name: str, energy: Callable[[float], float], r: float, stated: float, 
 def _corner(
     name: str, energy: Callable[[float], float], stated: float, units: tuple[float, float], symbol: str
 ) -> Claim:
-    """Return the change of slope as one agent passes through the other, by a difference quotient."""
+    """Return the claim that an energy's slope changes by the stated value as one agent passes through another."""
     step = _NEAR * units[1]
     change = -2.0 * (energy(step) - energy(0.0)) / step  # of |x|: the slope on the left is the opposite
     return of_state(

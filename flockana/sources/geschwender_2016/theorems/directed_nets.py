@@ -19,7 +19,7 @@ _ENDS = 1e-3  # relative: as near as the end of the run is to the limit
 
 
 def _undirected() -> Claim:
-    """Return the claim that equal ranges give the laws' forces, in the plane, from one random state."""
+    """Return the claim that a directed net with equal ranges gives the forces of Algorithms 1 to 3."""
     generator, target = np.random.default_rng(0), LinearTarget((0.0, 0.0), (1.0, 0.0))
     q, p = generator.uniform(-20.0, 20.0, (40, 2)), generator.normal(0.0, 1.0, (40, 2))
     laws = Algorithm1(), Algorithm2(target=target), Algorithm3(target=target, obstacles=(Sphere((40.0, 0.0), 5.0),))
@@ -35,7 +35,7 @@ def _undirected() -> Claim:
 
 
 def _pair() -> DirectedNet:
-    """Return a pair in which agent 0 sees the short-sighted agent 1 at the distance d."""
+    """Return the law of a pair with ranges 8.4 and 3: at distance d agent 0 sees agent 1, not conversely."""
     return DirectedNet(Algorithm1(), ranges=(8.4, 3.0))
 
 
@@ -52,13 +52,13 @@ def _momentum() -> Claim:
 
 
 def _own_energy(run: Trajectory) -> FloatArray:
-    """Return c1α ψ_α + ½‖p_0 − p_1‖² at each sample."""
+    """Return the pair energy c1α ψ_α + ½‖p_0 − p_1‖² at each sample of a run."""
     displacement, velocity_difference = run.q[:, 1, 0] - run.q[:, 0, 0], run.p[:, 0, 0] - run.p[:, 1, 0]
     return run.law.law.gains.c1_alpha * run.law.alpha.energy(np.abs(displacement)) + 0.5 * velocity_difference**2
 
 
 def _following() -> list[Claim]:
-    """Return agent 0 at rest at the distance d behind agent 1, which moves away at constant velocity."""
+    """Return claims on a run: agent 0 starts at rest, d behind agent 1, which moves off at constant velocity."""
     return _claims_on(observed(_pair(), [[0.0], [7.0]], [[0.0], [1.0]], (0.0, 30.0), rtol=1e-10), 1.0)
 
 

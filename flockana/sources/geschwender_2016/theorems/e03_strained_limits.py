@@ -34,20 +34,20 @@ _STRAINED = (40, 14)  # (n, seed) of a start whose limit is strained and holds n
 
 
 def random_disc(n: int, seed: int, *, d: float) -> FloatArray:
-    """Return a random start, uniform in a disc of radius 0.6 d √n: about a third denser than the lattice."""
+    """Return a random start, uniform in a disc of radius 0.45 d √n: about a third denser than the lattice."""
     rng = np.random.default_rng([n, seed])
     angle, radius = rng.uniform(0.0, 2.0 * np.pi, n), 0.45 * d * sqrt(n) * np.sqrt(rng.uniform(size=n))
     return np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
 
 
 def rhombus_with_double_agent(d: float) -> FloatArray:
-    """Return five agents: two triangles with a common side, and a double agent at one of its ends."""
+    """Return positions of five agents on a rhombus of two triangles, two of them at one end of the common side."""
     height = 0.5 * sqrt(3.0)
     return d * np.array([[0.0, 0.0], [1.0, 0.0], [0.5, height], [0.5, -height], [0.0, 0.0]])
 
 
 class _Limit(NamedTuple):
-    """Limit of a random start: each component of its net and its state."""
+    """Limit of a random start: positions and final state of each component of its net, and convergence."""
 
     parts: tuple[tuple[FloatArray, TerminalState], ...]
     converged: bool
@@ -95,7 +95,7 @@ def _shares(law: Algorithm1, limits: dict[int, list[_Limit]], tolerances: Tolera
 
 
 def _double_agent(law: Algorithm1) -> Claim:
-    """Return the claim on the smallest known strict minimum off the lattices: a pair held by three neighbours."""
+    """Return the claim that strict minima of V are α-lattices, judged at a pair of agents held by three others."""
     q = rhombus_with_double_agent(law.alpha.length)
     end, caught = terminal_state(law, q, 0.0 * q), attraction(law, q, 0.0 * q).certificate
     return of_state("double-agent", -caught.margin, caught.error, about="all", disproof="double-agent").described(
@@ -108,7 +108,7 @@ def _double_agent(law: Algorithm1) -> Claim:
 
 
 def _strained(law: Algorithm1, limit: _Limit, tolerances: Tolerances) -> Claim:
-    """Return a random start's limit of distinct agents with link lengths other than d, at a strict minimum of V."""
+    """Return the claim that limits have link lengths d, judged by the limit of one random start."""
     q, end = max(limit.parts, key=lambda part: part[1].strain)
     is_distinct = end.coincident == 0
     margin = tolerances.lattice - _certain_strain(law, q) if is_distinct else Enclosure.around(0.0, inf)
@@ -121,7 +121,7 @@ def _strained(law: Algorithm1, limit: _Limit, tolerances: Tolerances) -> Claim:
 
 
 def _smallest(tolerances: Tolerances) -> Claim:
-    """Return the claim on the smallest known strained minimum of distinct agents, recomputed from its file."""
+    """Return the claim that strict minima of distinct agents are α-lattices, judged at a strained minimum."""
     strain = smallest_strained()
     end = terminal_state(strain.law, strain.q, 0.0 * strain.q)
     margin = tolerances.lattice - _certain_strain(strain.law, strain.q)
@@ -136,7 +136,7 @@ def _smallest(tolerances: Tolerances) -> Claim:
 
 
 def _compressed(tolerances: Tolerances) -> Claim:
-    """Return the claim on a hexagon under Algorithm 2, whose pull λJ compresses every link."""
+    """Return the claim that Algorithm 2 converges to an α-lattice, tested on a compressed hexagon at rest."""
     law = Algorithm2(target=StaticTarget((0.0, 0.0)))
     limit = gradient_flow(law, hexagonal_patch(1, law.alpha.length))
     end = terminal_state(law, limit.q, 0.0 * limit.q)

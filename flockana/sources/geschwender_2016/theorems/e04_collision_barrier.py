@@ -43,7 +43,7 @@ def _error(alpha: AlphaInteraction, n: int) -> float:
 
 
 def _implication(alpha: AlphaInteraction) -> Claim:
-    """Return the printed claim, which is true: all pairs add at least 0 to the c* of a coincident pair."""
+    """Return the printed claim, which is true, that V >= c* where two agents coincide, since ψ_α >= 0."""
     # ψ_α has its zero at d_α, so what is looked at is ψ_α/(z − d_α)², which is positive there too, where it is φ_α'/2.
     z = alpha.sigma_norm(np.linspace(0.0, 1.1 * alpha.r, 2001))
     z = z[np.abs(z - alpha.d_alpha) > 1e-3 * alpha.d_alpha]
@@ -58,7 +58,7 @@ def _implication(alpha: AlphaInteraction) -> Claim:
 
 
 def _reached(alpha: AlphaInteraction) -> Claim:
-    """Return the claim on the largest α-lattice below c*, with the energy computed from the configuration."""
+    """Return the claim on the largest number of agents whose best α-lattice has an energy V below c*."""
     n = lattice_reach(alpha) or 0
     energies = [alpha.potential_energy(hexagonal_spiral(size, alpha.d)) for size in (n, n + 1)]
     margin, error = min(alpha.c_star - energies[0], energies[1] - alpha.c_star), _error(alpha, n + 1)

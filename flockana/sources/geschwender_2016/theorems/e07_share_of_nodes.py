@@ -13,13 +13,13 @@ _SPACE = 1000.0  # between components; within one, neighbours are 1 apart and th
 
 
 def _components(*sizes: int) -> FloatArray:
-    """Return rows of agents, connected within each row and out of range between rows."""
+    """Return positions on a line of groups of agents, each connected and out of range of all other groups."""
     rows = [_SPACE * k + np.arange(float(agent_count)) for k, agent_count in enumerate(sizes)]
     return np.concatenate(rows)[:, None]
 
 
 def _share(name: str, share: float, count: int, of: int, witness: str, detail: str) -> Claim:
-    """Return the claim that a share is a given number of a total."""
+    """Return the claim that a computed fraction equals a stated count divided by a total."""
     stated_text = f"{count / of:g}" if of == 100 else f"{count}/{of}"
     proof: dict[str, Any] = {"disproof" if name == "printed" else "proof": _PROOF}
     claim = by_count(name, abs(round(of * share) - count), **proof)

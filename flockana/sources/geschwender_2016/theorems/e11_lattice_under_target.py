@@ -34,7 +34,7 @@ _HALVINGS = 3
 
 
 def resting_place(alpha: AlphaInteraction, ratio: float, q: FloatArray) -> FloatArray:
-    """Return the resting state reached downhill from a start at this ratio c1γ/c1α."""
+    """Return the equilibrium positions reached by gradient flow from a start, at a given ratio c1γ/c1α."""
     limit = gradient_flow(pulled_law(alpha, ratio), q)
     if not limit.converged:
         raise SolverError(f"at c1γ/c1α = {ratio:.4g} the gradient flow did not settle (force {limit.force:.2g})")
@@ -62,7 +62,7 @@ def _gains(run: Observed) -> Hypothesis:
 
 
 def _printed(seen: Observed, end: TerminalState, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """Return the printed claim, decided by the strain of the certified final minimum."""
+    """Return the claim that the limit is a quasi-α-lattice, decided by the strain of the certified minimum."""
     caught = final_basin(seen)
     margin, is_certain = tolerances.quasi - limit_strain(seen, end, caught), caught.certificate.certain
     ratio = seen.law.gains.c1_gamma / seen.law.gains.c1_alpha
@@ -90,7 +90,7 @@ def _minimum(seen: Observed, end: TerminalState, needs: list[Hypothesis]) -> Cla
 
 @lru_cache(maxsize=32)
 def _brackets(alpha: AlphaInteraction) -> dict[int, tuple[float, float]] | str:
-    """Return brackets of the ratio by number of agents, or a reason for none."""
+    """Return brackets of the collapse ratio c1γ/c1α by number of agents, or a text saying why none was found."""
     law = pulled_law(alpha, natural_ratio(alpha))
     try:
         return {len(hexagonal_patch(rings, alpha.d)): collapse_threshold(law, rings) for rings in _RINGS}
@@ -99,7 +99,7 @@ def _brackets(alpha: AlphaInteraction) -> dict[int, tuple[float, float]] | str:
 
 
 def _thresholds(law: Algorithm2) -> Claim:
-    """Return the claim that the ratio falls with size: logarithmic brackets lie below each other."""
+    """Return the claim that the ratio c1γ/c1α at which a hexagonal patch collapses falls with its size."""
     brackets = _brackets(law.alpha)
     claim_details: dict[str, Any] = {
         "stated": "the ratio c1γ/c1α at which a hexagonal patch begins to collapse falls with n",

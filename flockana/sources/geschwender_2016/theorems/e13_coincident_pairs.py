@@ -16,7 +16,7 @@ _UNTIL = 0.03  # by then both pairs have coincided
 
 
 def _enclosed(run: Trajectory) -> str | None:
-    """Return the id of the interval proof of this run; None for other runs."""
+    """Return the id of the interval proof for the one run that the proof covers; None for all other runs."""
     alpha, gains = AlphaInteraction(a=5e4, b=5e4), Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.01, c2_gamma=0.01)
     start = np.array([[-12.0], [0.0], [30.0]]), np.array([[sqrt(5.6 * alpha.c_star)], [0.0], [0.0]])
     is_same = all(np.array_equal(*both) for both in zip(start, (run.q[0], run.p[0]), strict=True))

@@ -11,13 +11,13 @@ _SHIFT = 10.0  # of d
 
 
 def _three() -> tuple[AlphaInteraction, FloatArray]:
-    """Return three agents in a row: a negative friend behind the middle one, a positive friend ahead."""
+    """Return a pair law and three agents on a line, the middle one repelled from behind, attracted ahead."""
     alpha = AlphaInteraction()
     return alpha, np.array([[0.0], [5.0], [13.0]]) * alpha.d / 7.0
 
 
 def _forces(alpha: AlphaInteraction, q: FloatArray, *, printed: bool) -> FloatArray:
-    """Return u^g from the friends' form of every agent: Σ S^± (⟨q⟩^± − q_i), or without −S_i q_i."""
+    """Return the pair forces u^g of all agents in Reynolds form, corrected, or as printed without −S_i q_i."""
     rules, forces = reynolds(q, np.zeros_like(q), alpha=alpha, gains=Gains(c1_alpha=1.0)), np.zeros_like(q)
     for ends in (rules.links, rules.links[:, ::-1]):
         np.add.at(forces, ends[:, 0], rules.stress[:, None] * (q[ends[:, 1]] - (0.0 if printed else q[ends[:, 0]])))
@@ -25,7 +25,7 @@ def _forces(alpha: AlphaInteraction, q: FloatArray, *, printed: bool) -> FloatAr
 
 
 def _example() -> Claim:
-    """Return the claim on the printed force on the middle agent, before and after a shift of ten lengths."""
+    """Return the claim that a shift of ten lengths leaves the printed force on the middle agent unchanged."""
     alpha, q = _three()
     here, there = (float(_forces(alpha, q + w, printed=True)[1, 0]) for w in (0.0, _SHIFT * alpha.d))
     magnitude = float(np.abs(q).max() + _SHIFT * alpha.d) * alpha.strength
@@ -43,7 +43,7 @@ def _law(alpha: AlphaInteraction, q: FloatArray) -> FloatArray:
 
 
 def _state() -> Claim:
-    """Return the claim that the corrected form equals the law, before and after a shift."""
+    """Return the claim that the corrected Reynolds form equals the law's force, before and after a shift."""
     alpha, q = _three()
     bound = 64.0 * EPS * (1.0 + _SHIFT) * alpha.strength * 2.0
     states = [q + w for w in (0.0, _SHIFT * alpha.d)]

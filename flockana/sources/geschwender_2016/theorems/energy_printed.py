@@ -16,7 +16,7 @@ def pair_energy(run: Trajectory) -> FloatArray:
 
 
 def _pair_forces(run: Trajectory) -> FloatArray:
-    """Return −c1α ∇V at each sample."""
+    """Return the pair forces −c1α ∇V at each sample."""
     stiffness = run.law.gains.c1_alpha
     return np.array([run.law.alpha.forces(q, 0.0 * q, stiffness=stiffness, damping=0.0)[0] for q in run.q])
 

@@ -62,7 +62,7 @@ def _law(case: int, speed: float = 1.0) -> Algorithm1 | Algorithm2:
 
 
 def _expected(case: int, *, printed: bool) -> dict[str, Status]:
-    """Return the expected statuses of a case; maps have reports only, as the theorems are about flows."""
+    """Return the expected theorem and report statuses of one of the four MSN cases, as a flow or as a map."""
     statuses = refuted("alpha-flocking", "alpha-flocking-strict") | vacuous("os-5-terminal:i")
     if printed and case >= 3:  # the map's orbits part after some 300 steps
         return statuses | inconclusive("alpha-flocking", "alpha-flocking-strict", "source")
@@ -88,7 +88,7 @@ def _expected(case: int, *, printed: bool) -> dict[str, Status]:
 
 
 def _built(case: int, seed: int, *, printed: bool, speed: float = 1.0, away: float = 0.0) -> Scenario:
-    """Return a case, with optional scaled speed of the γ-agent and offset of the flock."""
+    """Return the scenario of an MSN case, with optional γ-agent speed factor and offset of the flock."""
     side, end = 50.0 if case <= 2 else 150.0, UPDATES * DT * max(1.0, 1.0 / ensure_positive("speed", speed))
     continuous_law = _law(case, speed)
     law: Law | DiscreteLaw = MSNDiscretisation(continuous_law, DT) if printed else continuous_law
@@ -131,7 +131,7 @@ def _case(case: int, *, printed: bool) -> Callable[..., Scenario]:
 
 
 def _static(seed: int = 0) -> Scenario:
-    """Return the scenario of erratum E16: the project's flock with large α gains and a resting target."""
+    """Return the scenario of erratum E16: the MSN project's flock with large α gains and a resting target."""
     law = Algorithm2(_ALPHA, _STRONG, StaticTarget((75.0, 75.0)))
     q = np.random.default_rng(seed).uniform(0.0, 150.0, (_N, 2))
     title = "MSN project's gains, 100 : 70, target at rest: pairs of agents coincide"

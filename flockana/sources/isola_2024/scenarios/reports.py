@@ -32,7 +32,7 @@ def _rank(run: Trajectory, k: int = -1, *, typeset: bool = False) -> float:
 
 
 def _agreement(measured: float, stated: float, scatter: float, text: str) -> Claim:
-    """Return a report of agreement with a published figure from a run with another random start."""
+    """Return the claim that a measured value agrees with a published one within the scatter over starts."""
     margin = 0.05 + scatter - abs(measured - stated)
     return finding(margin, text, computed=measured, stated=f"about {stated:g}")
 
@@ -156,7 +156,7 @@ def _ranks_at_start(r: float) -> dict[float, float]:
 
 @report("less-connected", "it starts less connected than cases 1 and 2")
 def _less_connected(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Report that the start in the wide square is less connected than those of cases 1 and 2 in the narrow one."""
+    """Report that rank(A)/n at the start is lower in the square of side 150 than in the one of side 50."""
     near, wide = _ranks_at_start(run.law.alpha.r).values()
     text = (
         f"rank(A)/n at iteration 0, in the mean over {_SEEDS} seeds: {wide:.3f} in the square of 150, {near:.3f} in "
@@ -167,7 +167,7 @@ def _less_connected(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 @report("full-rank", "its own measure rank(A)/n is 1.00 throughout")
 def _full_rank(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Report that the project's connectivity is 1 at every sample."""
+    """Report that the MSN project's connectivity measure rank(A)/n is 1 at every sample."""
     ranks = [_rank(run, k) for k in range(len(run.t))]
     deficient_count = sum(rank < _FULL for rank in ranks)
     text = f"rank(A)/n with a zero diagonal is {min(ranks):.3g} or more at all {len(ranks)} samples"
@@ -176,7 +176,7 @@ def _full_rank(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 @report("width", "the flock is about as wide as the sine's period")
 def _width(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Report that the flock is about one period wide, 0.5 to 1.5."""
+    """Report that the width of the flock is 0.5 to 1.5 periods of the γ-agent's sine."""
     late_run = run.window(50 * DT, float(run.t[-1]))
     width = float(np.ptp(late_run.q[:, :, 0], axis=1).mean())
     ratio = width / _PERIOD

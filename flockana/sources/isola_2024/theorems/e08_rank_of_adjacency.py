@@ -10,7 +10,7 @@ _PROOF = "net-measures"
 
 
 def _rank(name: str, share: float, full: int, detail: str, **proof: Any) -> Claim:
-    """Return the claim that a connected net has measure 1, decided by the integer rank."""
+    """Return the claim that a connectivity measure is 1 on a connected path of three agents, by integer rank."""
     return by_count(name, full - round(full * share), **proof).described(
         computed=share, stated=1.0, witness="a path of three agents", detail=detail
     )

@@ -27,7 +27,7 @@ from flockana.theorems.theorem_toolkit import (
 
 
 def measured_ratio(seen: Observed) -> Enclosure:
-    """Return the measured ratio of a run, with the fit residual and the second run as error."""
+    """Return the measured ratio of the flock's amplitude to the γ-agent's in a run, with its error."""
     (ratio, left), (second_ratio, _) = response_ratio(seen.run), response_ratio(seen.other)
     target: Any = seen.law.target
     floor = 0.0 if seen.is_map else seen.floors.place / float(np.linalg.norm(motion(target).swing))
@@ -50,7 +50,7 @@ def _hypotheses(run: Trajectory) -> list[Hypothesis]:
 
 
 def _agrees(name: str, ratio: Enclosure, gain: float, needs: Needs, tolerances: Tolerances, detail: str) -> Claim:
-    """Return the claim that a measured ratio agrees with a predicted gain, relative to a nonzero gain."""
+    """Return the claim that a measured amplitude ratio agrees with the predicted gain, relative to that gain."""
     return judged(name, tolerances.agreement - abs(ratio - gain) / (gain or 1.0), needs).described(
         computed=float(ratio.mid),
         stated=gain,

@@ -34,7 +34,7 @@ def circle_law(speed: float, factor: float) -> Algorithm2:
 
 
 def followed(law: Algorithm2 | MSNDiscretisation, *, away: float = 0.0) -> Enclosure:
-    """Return the circle ratio of 19 agents that start at a number of radii from the circle's centre."""
+    """Return the ratio of the flock's circle to the γ-agent's, for 19 agents starting `away` radii off centre."""
     path: Any = law.target
     start: FloatArray = hexagonal_patch(2, _ALPHA.d) + np.array(_CENTRE) + (away * _RADIUS, 0.0)
     end = max(_PERIODS / path.target.frequency, _LASTING)
@@ -57,7 +57,7 @@ def _condition() -> Any:
 
 
 def _falls(name: str, ratios: list[Enclosure], stated: str, text: str, **proof: Any) -> Claim:
-    """Return the claim that the ratios decrease."""
+    """Return the claim that the amplitude ratio decreases as the γ-agent's speed grows."""
     values, listing = _values(ratios), ", ".join(f"{ratio.mid:.3f}" for ratio in ratios)
     detail = f"at ¼, ½, 1, 2 and 4 times the γ-agent's speed {text} the ratio is {listing}"
     drops = stacked([a - b for a, b in pairwise(ratios)])
@@ -65,7 +65,7 @@ def _falls(name: str, ratios: list[Enclosure], stated: str, text: str, **proof: 
 
 
 def _first_grows(ratios: list[Enclosure]) -> Claim:
-    """Return the claim that the ratios do not all decrease."""
+    """Return the claim that the amplitude ratio rises between some two successive speeds of the γ-agent."""
     listing = ", ".join(f"{ratio.mid:.3f}" for ratio in ratios)
     return judged("first-grows", stacked([b - a for a, b in pairwise(ratios)]).max(), proof=_PROOF).described(
         computed=_values(ratios),

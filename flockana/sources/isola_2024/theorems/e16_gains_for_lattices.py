@@ -21,7 +21,7 @@ _SIZES, _STARTS = range(2, 8), 6  # agents that rest at c1γ = c1α, from a spir
 
 @lru_cache(maxsize=1)
 def _compressed_rest() -> FloatArray:
-    """Return the resting state of a hexagonal patch of 61 agents with the project's coefficients."""
+    """Return the resting positions of a hexagonal patch of 61 agents with the MSN project's gains."""
     return resting_place(_ALPHA, _RATIO, perturbed(hexagonal_patch(_RINGS, _ALPHA.d), _ALPHA.d))
 
 
@@ -30,7 +30,7 @@ def _measured(q: FloatArray, ratio: float, contact: float) -> TerminalState:
 
 
 def _least_strain(n: int, contact: float) -> Enclosure:
-    """Return the least strain of n resting agents at c1γ = c1α."""
+    """Return the least lattice strain of n agents at rest with c1γ = c1α, over several starts."""
     rng = np.random.default_rng(0)
     starts = [perturbed(hexagonal_spiral(n, _ALPHA.d), _ALPHA.d)]
     starts += [rng.uniform(-_ALPHA.d, _ALPHA.d, (n, 2)) for _ in range(_STARTS - 1)]

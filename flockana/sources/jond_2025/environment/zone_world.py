@@ -109,7 +109,7 @@ class ZoneWorld(ShortRepr):
         return np.array([alien.start for alien in self.aliens]) if self.aliens else np.empty((0, 0))
 
     def arrays(self, m: int, *, buffer: bool = False) -> World:
-        """Return the world's data as arrays for the compiled step.
+        """Return obstacles, box and aliens as arrays for the compiled step of zone-based flocking.
 
         Parameters
         ----------
@@ -178,5 +178,5 @@ class ZoneWorld(ShortRepr):
 
 
 def _chained(parts: list[FloatArray]) -> tuple[FloatArray, Any]:
-    """Return the concatenated rows of all parts, and the start index of each part."""
+    """Return arrays stacked by rows, and the start index of each array in the stack."""
     return np.vstack([np.empty((0, 4)), *parts]), np.cumsum([0, *(len(part) for part in parts)])

@@ -8,7 +8,7 @@ from flockana.sources.jond_2025.laws.minimal import DiscreteMinimalFlocking, Min
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
-    """Draw the figures of any flock, and distances, speeds and alignment as in Fig. 10."""
+    """Draw the standard figures of a run, with distances, speeds and alignment as in Fig. 10 of the paper."""
     caption = (
         "As in Fig. 10: distances of all pairs (greatest, median and least), which the paper says become constant; "
         "speeds of the agents; C = 1 where all move one way."

@@ -15,7 +15,7 @@ _DANGERS = (("obstacle_clearance_bound", "obstacle"), ("wall_distance", "wall"),
 
 
 def pictures(trajectory: Trajectory) -> tuple[Picture, ...]:
-    """Draw the flock, distances, speeds and inputs against their bounds, C R D, zones and dangers."""
+    """Draw a zone-based run: flock, distances, speeds, inputs, measures C, R and D, zone counts and dangers."""
     run, law = trajectory, trajectory.law
     radii = [(float(r), name) for r, name in zip(law.radii.reach, "rca", strict=True) if np.isfinite(r)]
     dangers = [Curve(run.metric(name), label) for name, label in _DANGERS if has_metric(run, name)]
@@ -60,7 +60,7 @@ def profile_curves(run: Trajectory) -> tuple[Curve, ...]:
 
 
 def _middle(run: Trajectory) -> int:
-    """Return the most split sample of a connected flock, or the nearest to an obstacle, or the middle one."""
+    """Return the sample to draw mid-run: the most split, else the nearest to an obstacle, else the middle one."""
     counts = component_counts(run)
     if counts[0] == 1 and counts.max() > 1:
         return int(counts.argmax())

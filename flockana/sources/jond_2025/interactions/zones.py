@@ -78,7 +78,7 @@ class ZoneRadii(ShortRepr):
             raise ArgumentError(f"{text}: expected radii that increase, 0 < r <= c < a{' < s' if watched else ''}")
 
     def arrays(self, n: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Return (r, c, a, s) of n agents, each of shape (n,)."""
+        """Return the zone radii (r, c, a, s) of n agents, each of shape (n,)."""
         r, c, a = (_spread(name, getattr(self, name), n) for name in ("r", "c", "a"))
         return r, c, a, r if self.s is None else _spread("s", self.s, n)
 
@@ -161,7 +161,7 @@ class ZoneWeights(ShortRepr):
 
 
 def per_pair(name: str, value: Any, *, square: bool = True) -> Table:
-    """Return one number >= 0, or a table of weights of j for i."""
+    """Return pair weights, checked, as one number >= 0 or a table whose entry (i, j) is j's weight for i."""
     if np.ndim(value) == 0:
         return ensure_nonnegative(name, value)
     table = np.asarray(value, dtype=object)
@@ -175,7 +175,7 @@ def per_pair(name: str, value: Any, *, square: bool = True) -> Table:
 
 
 def _check_sums(name: str, value: Table) -> None:
-    """Raise if the weights of a mean sum to zero over the other agents."""
+    """Raise if the weights of all other agents in an agent's weighted mean sum to zero."""
     remedy = f"sums to zero: its mean is not defined; switch {name} off by {name}_gain=0"
     if value == 0.0:
         raise ArgumentError(f"{name} {remedy}")

@@ -87,7 +87,7 @@ def _count(q, first, second, square, count):
 
 @kernel
 def _pull(q, p, first, second, square, mu, rho, align, u):
-    """Add edge forces among given pairs, with weights and lengths of the perceiving agent."""
+    """Add spring and alignment forces among given pairs to `u`, by the perceiving agent's weights and lengths."""
     m = q.shape[1]
     for k in range(first.size):
         i, j = np.uint64(first[k]), np.uint64(second[k])
@@ -138,7 +138,7 @@ def _numbers(x, square, s2, count):
 
 @kernel
 def _springs(s2, mu, rho, w):
-    """Return the spring factor of x = q_j − q_i for each agent."""
+    """Write the spring factors μ (1 − ρ_i/‖q_j − q_i‖) of all agents i towards one agent j to `w`."""
     for i in range(s2.size):
         stretch = mu * (1.0 - rho[i] / np.sqrt(s2[i]))
         w[i] = stretch if s2[i] > 0.0 else 0.0
@@ -146,7 +146,7 @@ def _springs(s2, mu, rho, w):
 
 @kernel
 def _pull_along(here, there, now, then, s2, square, w, align, u):
-    """Add one force component of one agent on all agents; zero for agents that do not perceive it."""
+    """Add one component of the force of one agent on all agents that perceive that agent to `u`."""
     for i in range(u.size):
         force = w[i] * (there - here[i]) + align[i] * (then - now[i])
         u[i] += force if s2[i] <= square[i] else 0.0
@@ -154,7 +154,7 @@ def _pull_along(here, there, now, then, s2, square, w, align, u):
 
 @kernel
 def _pull_all(x, v, square, mu, rho, align, s2, w, u):
-    """Add edge forces of all pairs (`_pull`), perceived agent by perceived agent."""
+    """Write the sums of spring and alignment forces of all pairs to `u`, one perceived agent at a time."""
     # in the order in which `_pull` adds to each agent's sum; loops over agents are compiled to SIMD
     u[:] = 0.0
     for j in range(s2.size):

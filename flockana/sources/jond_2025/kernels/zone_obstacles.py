@@ -64,7 +64,7 @@ def to_boundary(x, y, edges, first, last):
 
 @kernel
 def _in_zone(along, across, depth, half):
-    """Return whether a zone contains a point with coordinates along and across (>= 0) the heading."""
+    """Return whether a triangular or conical zone contains a point given by axial and lateral coordinates."""
     return along >= 0.0 and along / depth + across / half <= 1.0
 
 
@@ -90,7 +90,7 @@ def _holds(zone, px, py):
 
 @kernel
 def _add_push(gx, gy, c, inside, choices, out):
-    """Add the push along a vector to the boundary."""
+    """Add an obstacle's push along the vector to its closest boundary point to `out`."""
     distance = sqrt(gx * gx + gy * gy)
     if distance > 0.0:
         factor = push(distance, c, inside, choices) / distance
@@ -100,7 +100,7 @@ def _add_push(gx, gy, c, inside, choices, out):
 
 @kernel
 def _edge_terms(zone, c, world, first, last, inside, choices, out):
-    """Add one term for each edge of a polygon that the zone meets."""
+    """Add one obstacle-avoidance term to `out` for each edge of a polygon that an agent's zone meets."""
     is_literal = choices.trigger == 1
     for k in range(first, last):
         edge = (world.edges[k, 0], world.edges[k, 1], world.edges[k, 2], world.edges[k, 3])
@@ -111,7 +111,7 @@ def _edge_terms(zone, c, world, first, last, inside, choices, out):
 
 @kernel
 def zone_meets_polygon(zone, edges, first, last, literal):
-    """Return whether a triangular zone, as in `_crosses`, meets the polygon edges[first:last].
+    """Return whether a triangular obstacle zone meets the polygon with the edges edges[first:last].
 
     Literal: one of the segments from the agent to the three corners meets an edge, which misses a corner of the
     polygon that comes in between them. Else exact: edges cross, or one of the two holds the other.

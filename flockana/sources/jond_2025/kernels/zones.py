@@ -26,7 +26,7 @@ _NEAR_ZERO = 1e-4  # below it tanh(x)/x is 1 − x²/3 to rounding: the next ter
 
 
 class Zones(NamedTuple):
-    """Radii (n,), weights of pairs (n, n), or (1, 1) if equal, of agents (n,) and of agents and aliens (n, K)."""
+    """Zone radii of agents, and behaviour weights of pairs (n, n) or (1, 1), agents (n,) and aliens (n, K)."""
 
     r: FloatArray
     c: FloatArray
@@ -129,7 +129,7 @@ def _weight(table, i, j):
 
 @kernel
 def _noise_factor(settings, step, i, j, behaviour):
-    """Return the noise factor of a weight in this step."""
+    """Return the random factor of a behaviour weight in a time step; 1 without noise."""
     if settings.weight_noise == 0.0:
         return 1.0
     return 1.0 + settings.weight_noise * noise(settings.seed, step, i, j, behaviour)
@@ -214,7 +214,7 @@ def altitude(speed, r, c, a, settings, choices):
 
 @kernel
 def _grown(reach, a, nearest, settings):
-    """Return the next radius of attraction: a with a neighbour within a, `reach` with one within it, else larger."""
+    """Return the next radius of attraction: a with an agent within a, unchanged with one in reach, or larger."""
     if nearest <= a:
         return a
     return reach if nearest <= reach else reach + settings.dt * settings.growth
@@ -222,7 +222,7 @@ def _grown(reach, a, nearest, settings):
 
 @register_jitable  # a call would hand over a hundred numbers
 def behave(i, near, flock, step, rules, out):
-    """Write the six behaviours of agent i, with `near` around it, into out (6, m).
+    """Write the accelerations of agent i by the six behaviours, from the candidates `near`, into out (6, m).
 
     Its heading and its estimate move on. Returns how near the nearest is of those who attract it.
     """
@@ -342,7 +342,7 @@ def _take_step(flock, u, step, cells, near, rules, out, total):
 
 @kernel
 def run(flock, first, rules, steps):
-    """Run `steps` steps from a given step number; the flock's arrays are changed.
+    """Simulate `steps` steps of zone-based flocking from a given step number, changing the flock's arrays.
 
     Returns (q, p, u, heading, estimate, reach, alien) over time, each (steps, ...).
     """

@@ -110,13 +110,13 @@ class MinimalFlocking(Law):
     functions = ()  # neighbours are chosen by radii of agents
 
     def features(self) -> tuple[Feature, ...]:
-        """Return the smallest perception radius as feature; springs are linear in the distance."""
+        """Return the smallest perception radius as the law's narrowest length; springs vary linearly."""
         radius = float(np.min(self.radius)) if self.edges is None else inf
         return (Feature("the perception radii", "pairs", radius),)
 
     @property
     def surfaces(self) -> tuple[PerAgent, ...]:
-        """Perception radius of every agent; none on a frozen graph."""
+        """Switching distances of the law: each agent's perception radius, or none on a frozen graph."""
         return (self.radius,) if self.edges is None else ()
 
     def in_units(self, length: float, time: float) -> MinimalFlocking:
@@ -146,7 +146,7 @@ class MinimalFlocking(Law):
 
     @cached_property
     def _named(self) -> int:
-        """Return the least number of agents named by the edges."""
+        """Return the least flock size that the edges of a frozen graph require: highest index plus 1."""
         return 1 + max((max(edge) for edge in self.edges or ()), default=-1)
 
     def _check_sizes(self) -> None:
@@ -157,7 +157,7 @@ class MinimalFlocking(Law):
             raise ArgumentError(f"edges name agent {self._named - 1}: expected agents below {smallest}, as in {sizes}")
 
     def _check_means(self) -> None:
-        """Raise if all weights of a mean over agents are zero."""
+        """Raise if the alignment weights of all neighbours of an agent are zero."""
         if not isinstance(self.sigma, tuple) or not self.normalised:
             return
         sigma = np.array(self.sigma)
@@ -174,7 +174,7 @@ class MinimalFlocking(Law):
 
     @property
     def agents(self) -> int | None:
-        """Number of agents fixed by parameter tables; None for single numbers."""
+        """Number of agents implied by per-agent parameters; None if all are single numbers."""
         return next(iter(self._sizes.values()), None)
 
     def check_agents(self, n: int) -> None:  # noqa: D102
@@ -224,7 +224,7 @@ class MinimalFlocking(Law):
         return self.edges is None and isinstance(self.mu, float) and isinstance(self.sigma, float)
 
     def _alike(self, n: int) -> kernel.EqualEdges:
-        """Return the parameters of a law with equal weights."""
+        """Return the kernel parameters of n agents for a law that weighs all perceived agents equally."""
         radius = np.full(n, self.radius)
         spacing = self.spacing if self.beta is None else np.array(self.beta) * radius
         spacings = np.full(n, 1.0 if spacing is None else spacing)
@@ -232,7 +232,7 @@ class MinimalFlocking(Law):
         return kernel.EqualEdges(radius, spacings, self.spacing is None, mu, sigma, self.normalised)
 
     def block(self, solver: Any) -> Block | None:
-        """Return `semi_implicit` for semi-implicit Euler steps; None where `flow` is used."""
+        """Return a function that makes many semi-implicit Euler steps; None for other solvers."""
         if solver.position_factor != 1.0:
             return None
 
@@ -252,7 +252,7 @@ class MinimalFlocking(Law):
     def semi_implicit(
         self, q: FloatArray, p: FloatArray, dt: float, steps: int
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return q, p after each kept step and u before, by semi-implicit Euler in one compiled loop."""
+        """Return positions and velocities after, and inputs before, each semi-implicit Euler step."""
         return kernel.semi_implicit_steps(q, p, self._alike(len(q)), dt, steps)
 
     def flow(self, t: float, q: FloatArray, p: FloatArray) -> tuple[FloatArray, float]:
@@ -318,7 +318,7 @@ class MinimalFlocking(Law):
         own_columns = (m * head[:, None] + np.arange(m))[:, None, :]
 
         def summed(blocks: FloatArray) -> Any:
-            """Return Σ over edges of a block at (i, j) and its negative at (i, i)."""
+            """Return the sparse matrix with each edge's block added at (i, j) and subtracted at (i, i)."""
             entries = np.concatenate([blocks.ravel(), -blocks.ravel()])
             at = [np.broadcast_to(index, blocks.shape).ravel() for index in (rows, rows, columns, own_columns)]
             indices = np.concatenate(at[:2]), np.concatenate(at[2:])

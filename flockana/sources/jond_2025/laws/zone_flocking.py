@@ -220,7 +220,7 @@ class ZoneFlocking(DiscreteLaw):
         return memory | self._needed_memory(radii, np.array(0.0), self.world.alien_starts)
 
     def _needed_memory(self, reach: FloatArray, step: FloatArray, alien: FloatArray) -> dict[str, FloatArray]:
-        """Return the memory without unneeded parts."""
+        """Return those of zone radii, step number and aliens that the law's settings need as memory."""
         is_needed = {"reach": self.growth > 0.0, "step": not self.noise.quiet, "alien": bool(self.world.aliens)}
         return {name: x for name, x in (("reach", reach), ("step", step), ("alien", alien)) if is_needed[name]}
 
@@ -243,7 +243,7 @@ class ZoneFlocking(DiscreteLaw):
         return qs, ps, us, {"heading": headings, "estimate": estimates} | self._needed_memory(reach, numbers, aliens)
 
     def behaviours(self, q: Any, p: Any, memory: Mapping[str, Any] | None = None) -> dict[str, FloatArray]:
-        """Return the six accelerations at one instant by name, each (n, m), before the bound (9).
+        """Return all agents' accelerations (n, m) from each of six behaviours, by name, before the bound (9).
 
         Parameters
         ----------
@@ -283,7 +283,7 @@ class ZoneFlocking(DiscreteLaw):
         return series
 
     def _clearances(self, t: FloatArray, q: FloatArray) -> dict[str, tuple[str, Any]]:
-        """Return clearances at the samples, and bounds on the straight path between them."""
+        """Return measures by name: clearance from obstacles at samples, and a lower bound of it in between."""
 
         @cache
         def measured() -> tuple[FloatArray, FloatArray]:
@@ -314,7 +314,7 @@ class ZoneFlocking(DiscreteLaw):
         return length_by_zone[self.zone_length]
 
     def _state(self, q: FloatArray, p: FloatArray, memory: Mapping[str, Any]) -> tuple[compiled.Flock, int]:
-        """Return copies of the state, and the number of the next step."""
+        """Return copies of positions, velocities and memory as a flock, and the number of the next step."""
         unknown = {"reach": self.radii.arrays(len(q))[2], "alien": np.empty((0, q.shape[1])), "step": 0}
         full_memory: dict[str, Any] = unknown | dict(memory)
         names = ("heading", "estimate", "reach", "alien")
@@ -325,7 +325,7 @@ class ZoneFlocking(DiscreteLaw):
         return compiled.Zones(*self.radii.arrays(n), **self.weights.arrays(n, len(self.world.aliens)))
 
     def _rules(self, n: int, m: int) -> compiled.Rules:
-        """Return the numbers of the compiled step."""
+        """Return zones, settings, choices and world of the law in the form of the compiled step."""
         gains = self.weights.cohesion_gain, self.weights.alignment_gain
         chance = self.noise.weights, self.noise.velocities
         step_parameters = self.dt, self.desired_speed, self.u_max, self.v_max

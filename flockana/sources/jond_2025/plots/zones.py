@@ -37,7 +37,7 @@ def _law(trajectory: Trajectory) -> ZoneFlocking:
 def zones(
     trajectory: Trajectory, time: float | None = None, *, ax: Axes | None = None, velocities: bool = False
 ) -> Axes:
-    """Draw one sample of a zone-based run: agents, obstacle zones, links within a, world, aliens.
+    """Draw one sample of a zone-based run: agents, obstacle zones, links within radius a, obstacles, aliens.
 
     In the plane an obstacle zone is a triangle ahead of its agent; in space the heading stands for it. Of the
     conventional method the circular buffers are drawn instead. `snapshot` and films draw runs of ZoneFlocking so.
@@ -91,7 +91,7 @@ def _(law: Any, trajectory: Trajectory) -> FloatArray:
 
 
 def _corners(world: ZoneWorld, m: int) -> FloatArray:
-    """Return points that must be in view: obstacles and box."""
+    """Return the extreme points of obstacles and box that a plot must contain."""
     corners = [np.empty((0, m))]
     for obstacle in world.obstacles:
         corners.append(bounds([obstacle]) if isinstance(obstacle, Sphere) else np.array(obstacle.vertices))
@@ -129,7 +129,7 @@ def _world(ax: Any, world: ZoneWorld, *, buffer: bool) -> None:
 
 
 def _space(ax: Any, world: ZoneWorld) -> None:
-    """Draw balls and the edges of the box in space."""
+    """Draw spherical obstacles and the edges of the box in three dimensions."""
     draw_obstacles(world.obstacles, ax=ax)  # type: ignore[arg-type]  # polygons live in the plane
     if world.box is not None:
         corners = list(product(*zip(world.box.low, world.box.high, strict=True)))
@@ -188,7 +188,7 @@ def zone_populations(trajectory: Trajectory, ax: Any) -> None:
 
 
 def _measured(ax: Any, trajectory: Trajectory, styles: Iterable[tuple[str, str, str, str]]) -> bool:
-    """Draw the run's measures among (name, label, colour, dash); return whether there is one."""
+    """Draw those of the listed measures that a run has over time; return whether any is drawn."""
     _law(trajectory)
     metrics = trajectory.metrics()
     lines = [(metrics[name].values, label, colour, dash) for name, label, colour, dash in styles if name in metrics]
@@ -197,7 +197,7 @@ def _measured(ax: Any, trajectory: Trajectory, styles: Iterable[tuple[str, str, 
 
 
 def _against_bound(ax: Any, t: FloatArray, values: FloatArray, bound: float, others: Any = ()) -> None:
-    """Draw the values of all agents, their mean and the bound."""
+    """Draw a quantity of all agents over time, its mean and its bound."""
     hairlines(ax, t, values, "agents", crowd=2)
     curves(ax, t, [(values.mean(axis=1), "mean", INK, "-")])
     levels(ax, [*others, (bound, "bound", VERMILLION, "--")])

@@ -76,7 +76,7 @@ def _distance_from_alien(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 @report("gives-way", "of two agents that meet, the one with the larger weight for the other gives way")
 def _right_of_way(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Report that after a head-on meeting both agents follow the one with the smaller weight for the other."""
+    """Report that after a head-on meeting both move the way of the agent with less separation weight."""
     end = run.p[-1, len(_HAZARD) :, 0].reshape(-1, 2)
     order_signs = np.array([1.0 if first < second_weight else -1.0 for first, second_weight in _GIVES_WAY])
     slowest = float((end * order_signs[:, None]).min()) / _SPEED

@@ -92,7 +92,7 @@ def bounds(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _apart_after_together(run: Trajectory) -> tuple[npt.NDArray[np.int64], int]:
-    """Return component counts, and the first sample that splits after a connected one; -1 without one."""
+    """Return component counts over time, and the first sample at which a once connected flock is split, or -1."""
     counts = component_counts(run)
     joined_samples = np.flatnonzero(counts == 1)
     split_samples = np.flatnonzero(counts[joined_samples[0] :] > 1) if joined_samples.size else joined_samples
@@ -165,7 +165,7 @@ THROUGH = (_passes, bounds, contained)
 
 
 def apart(seed: int) -> Start:
-    """Return the printed start, redrawn until all distances exceed 2 m and the net within a is connected."""
+    """Return the paper's random start, redrawn until all distances exceed 2 m and the net is connected."""
     return lazy_state((N, 2), lambda: _drawn_apart(seed))
 
 
@@ -227,7 +227,7 @@ def zone_entry(
     seeds: int = 25,
     **fields: Any,
 ) -> Builder:
-    """Return the builder of a scenario of the paper with its reports, first those in the run's units."""
+    """Return the builder of a scenario of the bearing-distance paper, with its reports."""
     title, source = f"Bearing-distance flocking: {title}", f"Jond, bearing-distance flocking: {source}"
     judged = as_it_is + in_source_units(lambda: law.scales, reports)
     fields |= {"references": ("jond-2025",), "settings": settings, "seeds": seeds if settings else 0}
@@ -235,7 +235,7 @@ def zone_entry(
 
 
 def _read(name: str, parameters: str, law: ZoneFlocking, expected: dict[str, Status]) -> Builder:
-    """Return the run of a paper section in a given reading, both by name."""
+    """Return the scenario builder for a section of the paper under a given reading, both by name."""
     place_text, place_note, end, reports, instants = _SECTIONS[name[5:7]]
     description, text, draw, seeds, settings = _READINGS[name[7:]]
     title, source_text = f"{place_text}, {description}", f"{PRINTED}{parameters}. {text}{place_note}"

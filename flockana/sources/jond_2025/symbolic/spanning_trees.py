@@ -19,13 +19,13 @@ Edges = Sequence[tuple[int, int]]
 
 
 def incidence_matrix(edges: Edges) -> sp.Matrix:
-    """Return D, a row for each agent and a column for each edge."""
+    """Return the incidence matrix D, with a row for each agent and a column for each edge."""
     agents = 1 + max(max(edge) for edge in edges)
     return sp.Matrix(agents, len(edges), lambda i, e: int(i == edges[e][1]) - int(i == edges[e][0]))
 
 
 def receiver_matrix(edges: Edges) -> sp.Matrix:
-    """Return D_in: the entries +1 of D."""
+    """Return D_in, the incidence matrix D with all entries but +1 set to 0."""
     return incidence_matrix(edges).applyfunc(lambda entry: sp.Max(entry, 0))
 
 
@@ -101,7 +101,7 @@ def tree_characteristic(edges: Edges) -> Derivation:
 
 
 def frozen_eigenvalues(ratio: sp.Expr, *, mu: sp.Expr = sp.S.One) -> tuple[sp.Expr, sp.Expr]:
-    """Return the roots of s^2 + s + mu (1 - 1/ratio): an edge of the matrix A_cl at |x| = ratio rho."""
+    """Return the eigenvalues of A_cl for an edge at |x| = ratio rho: roots of s^2 + s + mu (1 - 1/ratio)."""
     w = sp.sympify(mu) * (1 - 1 / sp.sympify(ratio))
     root = sp.sqrt(1 - 4 * w)
     return sp.expand((-1 + root) / 2), sp.expand((-1 - root) / 2)

@@ -48,7 +48,7 @@ def bearing_form(m: int = 2) -> dict[str, sp.Matrix]:
 
 
 def derive_equivalence(m: int = 2) -> Derivation:
-    """Derive that the two forms agree for cohesion, alignment (the identity (13)) and separation."""
+    """Derive that position and bearing forms agree for cohesion, alignment (identity (13)) and separation."""
     left, right = bearing_form(m), position_form(m)
     residuals = tuple(sp.simplify(a - b) for name in left for a, b in zip(left[name], right[name], strict=True))
     d, b, d_rate, b_rate, v_i, v_j = sp.symbols("d_ij b_ij d'_ij b'_ij v_i v_j")
@@ -60,7 +60,7 @@ def derive_equivalence(m: int = 2) -> Derivation:
 
 
 def estimate_gap() -> sp.Expr:
-    """Return v(t + δ) − v̂(t + δ) after one step from v̂ = v by (17): δ u^ga, in the absence of saturation."""
+    """Return the error v − v̂ of velocity estimate (17) one step after v̂ = v: δ u^ga unsaturated."""
     # (17) adds δ u^aux, the input without the global speed term: Remark 3's equivalence fails (J8)
     aux = sp.Symbol("u^aux", real=True)
     drive_force = GAIN * (SPEED * sp.sign(OWN) - OWN)

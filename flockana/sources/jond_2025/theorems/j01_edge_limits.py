@@ -28,7 +28,7 @@ def random_forest(count: int, seed: int) -> tuple[MinimalFlocking, FloatArray, F
 
 
 def _trees(seen: Observed) -> list[tuple[TreeCase, End]]:
-    """Yield each tree of a forest, with its state at the end of the run."""
+    """Return the trees of a forest, each with its state at the end of the run."""
     edges: Edges = seen.law.edges
     label = components(seen.n, np.array(edges, dtype=np.int32))
     trees = []

@@ -7,7 +7,7 @@ from flockana.theorems.theorem_toolkit import Claim, Tolerances, erratum, exact,
 
 
 def _two_agents_abscissa(ratio: float) -> float:
-    """Return the spectral abscissa of a root and its child at a multiple of the desired length ρ."""
+    """Return the child's spectral abscissa in a two-agent tree whose edge is `ratio` desired lengths long."""
     law = MinimalFlocking(edges=((0, 1),), spacing=1.0)
     A = law.jacobian(0.0, np.array([[0.0, 0.0], [ratio, 0.0]]), np.zeros((2, 2)))
     child = [2, 3, 6, 7]
@@ -15,7 +15,7 @@ def _two_agents_abscissa(ratio: float) -> float:
 
 
 def _positive_definite() -> Claim:
-    """Return the claim on definiteness of edge matrices, for a root with one child and five grandchildren."""
+    """Return the claim that edge matrices are positive definite, for a root, its child and five grandchildren."""
     from flockana.sources.jond_2025.symbolic.spanning_trees import symmetric_part
 
     name, five_children = "positive-definite", symmetric_part(5)

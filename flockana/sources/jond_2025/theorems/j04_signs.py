@@ -12,7 +12,7 @@ _SAME, _ROUNDING = 1e-9, 1e-13  # relative: forces that differ by less are the s
 
 
 def _identity(name: str, stated: str, detail: str, **backed: str) -> Claim:
-    """Return an identity of separation forces on a directed tree of five, by algebra."""
+    """Return the claim that an identity of separation forces holds on a directed tree of five, by algebra."""
     from flockana.sources.jond_2025.symbolic.spanning_trees import separation_forms
 
     residuals = separation_forms(_TREE)[name].residuals

@@ -13,7 +13,7 @@ _PROOF = "bearing-distance-printed"
 
 
 def _desired_lengths(law: MinimalFlocking) -> FloatArray:
-    """Return the desired lengths of the edge between an end and the middle, for each of the two agents."""
+    """Return the two lengths that an end agent and the middle agent of a path of three desire of their edge."""
     head, tail, _, rho, _ = law.edge_data(np.empty((3, 1)))
     spacing = {(int(j), int(i)): float(distance) for i, j, distance in zip(head, tail, rho, strict=True)}
     return np.array([spacing[1, 0], spacing[0, 1]])
@@ -30,7 +30,7 @@ def _error(law: MinimalFlocking, seed: int) -> Enclosure:
 
 
 def _rate(law: MinimalFlocking) -> float:
-    """Return the slowest decay rate of the linearised runaway, without its free direction."""
+    """Return the slowest decay rate of perturbations of the accelerating flock, its zero mode left out."""
     q = np.array([[-5.0 / 3.0, 0.0], [0.0, 0.0], [-5.0 / 3.0, 0.0]])
     T = np.kron(np.eye(2), np.kron(-incidence(3, ((0, 1), (1, 2))).T, np.eye(2)))  # (q, p) to edges and their rates
     modes = np.linalg.eigvals(T @ np.asarray(law.jacobian(0.0, q, 0.0 * q)) @ np.linalg.pinv(T))

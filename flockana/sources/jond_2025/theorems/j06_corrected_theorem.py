@@ -13,7 +13,7 @@ _TREE = ((0, 1), (1, 2), (1, 3), (0, 4))
 
 
 def _on_run(name: str, law: MinimalFlocking, m: int, tolerances: Tolerances) -> Claim:
-    """Return theorem zone-1-corrected on a run of a tree of five in m dimensions, as one claim."""
+    """Return one claim that the corrected Theorem 1 holds in a run of a five-agent tree in m dimensions."""
     corrected, rng = zone_1_corrected.theorem, np.random.default_rng(m)
     q, p = rng.uniform(-2.0, 2.0, (5, m)), rng.uniform(-0.5, 0.5, (5, m))
     observation = observed(law, q, p, (0.0, 80.0))

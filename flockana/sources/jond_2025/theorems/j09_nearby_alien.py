@@ -15,7 +15,7 @@ _STRONG = ZoneWeights(separation=20.0, cohesion_gain=0.5, alignment_gain=4.0)  #
 
 
 def _nearest_alien(surveillance: str) -> tuple[float, list[float]]:
-    """Return (least signed gap of an agent head on at a resting alien, least distance of ten agents by seed)."""
+    """Return (least signed gap of an agent heading for a resting alien, least alien distances by seed)."""
     resting_world = ZoneWorld((), None, (Alien((20.0, 0.0), detection=1e-3),))
     lone_law = ZoneFlocking(_WATCHFUL, ZoneWeights(), resting_world, surveillance=surveillance, u_max=_UNBOUNDED)
     head_on_run = observed(lone_law, [[0.0, 0.0]], [[3.0, 0.0]], (0.0, DURATION)).run

@@ -14,7 +14,7 @@ _SAFE, _IN_ORDER, _FROM = 1.5, 0.99, 2.0  # m; what counts as C = 1; s
 
 
 def _least_coordination(run: Trajectory) -> float:
-    """Return the least C of a run from 2 s on."""
+    """Return the least coordination C of a run from 2 s on."""
     return min(coordination(p) for p in run.p[run.t >= _FROM - 1e-9])
 
 

@@ -20,7 +20,7 @@ _AT_AGENTS = ((10.0, 12.0), (12.0, 15.0))
 
 
 def _outward(law: ZoneFlocking, point: tuple[float, float], outward: tuple[float, float]) -> float:
-    """Return the obstacle term of an agent at a point, along the outward direction."""
+    """Return the obstacle-avoidance acceleration of an agent at a point, along a given direction."""
     force = law.behaviours([point], [[1e-3, 0.0]])["obstacle"][0]
     return float(np.dot(force, outward))
 
@@ -39,7 +39,7 @@ def _inside(reading: str) -> tuple[float, float, float]:
 
 
 def _head_on(law: ZoneFlocking) -> tuple[float, float]:
-    """Return (last, least) signed gap of two agents head on."""
+    """Return the final and the least signed gap of two agents that run head on at each other."""
     run = observed(law, [[0.0, 0.0], [20.0, 0.0]], [[3.0, 0.0], [-3.0, 0.0]], (0.0, 60.0)).run
     gap = run.q[:, 1, 0] - run.q[:, 0, 0]
     return float(gap[-1]), float(gap.min())
@@ -52,7 +52,7 @@ def _at_wall(speed: float, weight: float) -> float:
 
 
 def _separation_only(speed: float, weight: float) -> ZoneFlocking:
-    """Return the law with separation and desired speed alone."""
+    """Return the zone-based law with separation and desired speed only."""
     weights = ZoneWeights(speed=speed, separation=weight, cohesion_gain=0.0, alignment_gain=0.0)
     return ZoneFlocking(_RADII, weights, u_max=_UNBOUNDED)
 

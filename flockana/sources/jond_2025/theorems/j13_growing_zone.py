@@ -32,13 +32,13 @@ def _law(zone_length: str, obstacle_force: str = "repulsive") -> ZoneFlocking:
 
 
 def _braking(law: ZoneFlocking, distance: float, speed: float) -> float:
-    """Return the obstacle term of an agent heading for a wall, relative to w^oa c."""
+    """Return the obstacle-avoidance deceleration of an agent heading for a wall, divided by w^oa c."""
     force = law.behaviours([[_SIDE - distance, 0.5 * _SIDE]], [[speed, 0.0]])["obstacle"][0, 0]
     return -float(force) / (_WEIGHT * _C)
 
 
 def _head_on(law: ZoneFlocking) -> FloatArray:
-    """Return the distances over time of an agent heading for a wall."""
+    """Return the distance over time of an agent from the wall that the agent heads for."""
     q, p = np.array([_PLACE]), np.array([_HEADING])
     return _SIDE - law.iterate(0.0, q, p, law.start(q, p), _STEPS)[0][:, 0, 0]
 
@@ -66,7 +66,7 @@ def _clamped() -> Claim:
 
 
 def _reaching() -> Claim:
-    """Return the claim that an agent brakes just within its altitude and not just beyond, at every speed."""
+    """Return the claim that an agent brakes just inside its speed-dependent obstacle zone, and not outside."""
     law = _law("speed", "reaching")
     deviations, rows = [], {}
     for speed in (0.5, 1.0, 2.0, 3.0, _V_MAX):
@@ -88,7 +88,7 @@ def _reaching() -> Claim:
 
 
 def _slow() -> Claim:
-    """Return the claim that an agent at rest has the short zone and stands off at r − v^d w^ga/w^oa."""
+    """Return the claim that an agent braked at a wall has the short zone and stops at r − v^d w^ga/w^oa."""
     measured = float(_head_on(_law("speed", "reaching"))[-1])
     stated_value = _R - _DESIRED * _DRIVE / _WEIGHT
     return of_map("stand-off", 1e-6 - abs(measured - stated_value) / _C, _ROUNDING, computed=measured).described(

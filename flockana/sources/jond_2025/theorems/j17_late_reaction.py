@@ -14,7 +14,7 @@ _ROUNDING = 1e-9  # relative: of a few hundred steps
 
 
 def _meeting(s: float) -> tuple[float, float, float]:
-    """Return (time of the alien's first move, time of the agent's first reaction, least distance), head on."""
+    """Return the times of an alien's first move and an agent's first reaction head on, and the least distance."""
     world = ZoneWorld(aliens=(Alien((_AT, 0.0), detection=_DETECTION, speed=_PURSUIT),))
     law = ZoneFlocking(ZoneRadii(1.5, c=3.0, a=5.0, s=s), ZoneWeights(), world, u_max=1e6)
     q, p = np.array([[0.0, 0.0]]), np.array([[_SPEED, 0.0]])

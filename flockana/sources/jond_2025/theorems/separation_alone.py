@@ -25,7 +25,7 @@ _TIGHT: dict[str, Any] = {"rtol": 1e-11, "atol": 1e-12}
 
 
 def _crossings(t: FloatArray, y: FloatArray) -> FloatArray:
-    """Return the times at which y rises through zero, by linear interpolation."""
+    """Return the times at which a sampled signal y rises through zero, by linear interpolation."""
     k = np.flatnonzero((y[:-1] < 0.0) & (y[1:] >= 0.0))
     return t[k] - y[k] * (t[k + 1] - t[k]) / (y[k + 1] - y[k])
 

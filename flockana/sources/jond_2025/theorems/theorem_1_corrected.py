@@ -38,7 +38,7 @@ def _lengths(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
 
 
 def _spectrum(case: TreeCase, seen: Observed, spectrum: Spectrum, needs: list[Hypothesis]) -> Claim:
-    """Return the claim about the spectrum at the final equilibrium: factors and zero modes."""
+    """Return the claim that the spectrum at the final equilibrium has the stated factors and zero modes."""
     m, directed = seen.m, case.root is not None
     expected, factors = (case.n - 1) * (m - 1), "roots with negative real parts beside"
     if directed:

@@ -26,7 +26,7 @@ def _at_rest(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
 
 
 def _edges_vanish(case: TreeCase, seen: Observed, needs: list[Hypothesis]) -> Claim:
-    """Return the claim x -> 0 on this run, refuted by an edge with too little energy to shorten to 0."""
+    """Return the claim that edge vectors tend to 0, refuted by an edge with too little energy to shorten to 0."""
     distance, energy = case.lengths(seen.run.q[-1]), kept(case, seen.end)
     text = f"one edge never falls below {energy:.4g} of its desired length"
     return limit_claim("edges", needs, escape=Certificate(energy, text, 0.0)).described(

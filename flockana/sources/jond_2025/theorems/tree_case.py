@@ -16,7 +16,7 @@ from flockana.theorems.theorem_toolkit import EPS, Enclosure, FloatArray, Hypoth
 
 @dataclass(frozen=True)
 class TreeCase:
-    """Minimal law on a frozen tree, by its edges."""
+    """Minimal flocking law on a frozen tree graph, with its quantities for each edge."""
 
     law: MinimalFlocking
     n: int
@@ -73,7 +73,7 @@ class TreeCase:
         return Enclosure.around(distances, error[..., tails] + error[..., heads] + 4.0 * EPS * distances).clip(0.0)
 
     def energies(self, lengths: Enclosure, rates: Enclosure) -> Enclosure:
-        """Return V = ½‖x'‖² + ½μ(‖x‖ − ρ)² of each edge, from ‖x‖ and ‖x'‖."""
+        """Return the energy V = ½‖x'‖² + ½μ(‖x‖ − ρ)² of each edge, from ‖x‖ and ‖x'‖."""
         return 0.5 * (rates.square() + self.mu * (lengths - self.rho).square())
 
     def shortest(self, seen: Observed) -> Enclosure:
@@ -109,7 +109,7 @@ def minimal_law(seen: Observed) -> Hypothesis:
 
 
 def tree_hypotheses(seen: Observed) -> tuple[list[Hypothesis], TreeCase | None]:
-    """Return the hypotheses common to both forms of the theorem, and the tree; None without a tree."""
+    """Return the hypotheses shared by printed and corrected Theorem 1, and the tree; None without a tree."""
     case, frozen = tree_case(seen.law, seen.n), seen.law.edges is not None
     kind = "no frozen graph" if not frozen else "neither a rooted out-tree nor a reciprocal undirected tree"
     if case is not None:

@@ -15,19 +15,19 @@ _PROOF = "bearing-distance"
 
 
 def proof_of(case: TreeCase, m: int) -> str | None:
-    """Return the id of the proof, for the plane and space, and on directed trees for alignment weight 1."""
+    """Return the id of the proof that covers a tree in m dimensions; None if no proof does."""
     return _PROOF if m in (2, 3) and (case.root is None or bool((case.align == 1.0).all())) else None
 
 
 def _room(case: TreeCase, seen: Observed, energy: Enclosure, edges: list[int], share: float) -> Enclosure:
-    """Return (least |x| − ρ + √(2E(1 + share)/μ))/ρ of some edges, E the energy of each at the start."""
+    """Return the margin of edges' least lengths over the bound from their initial energies, relative to ρ."""
     rho, mu = case.rho[edges], case.mu[edges]
     amplitude = (2.0 * (1.0 + share) * energy / mu).sqrt()
     return (case.shortest(seen)[edges] - rho + amplitude) / rho
 
 
 def root_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """Return the claim that V of an edge from the root falls, and keeps the edge from length 0."""
+    """Return the claim that the energy of edges from the root falls and keeps their lengths above 0."""
     if seen.doubt:
         return undecided("root-edge", "the edges' energies are not known", needs)
     link_lengths, rates = case.edges_of(seen.run.q, seen.shape_error), case.edges_of(seen.run.p, seen.speed_error)
@@ -50,14 +50,14 @@ def root_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], toleranc
 
 
 def _springs_rounding(case: TreeCase, seen: Observed) -> float:
-    """Return the rounding error of ½ Σ μ (|x| − ρ)² far from the origin."""
+    """Return the rounding error of the spring energy ½ Σ μ (|x| − ρ)² far from the origin."""
     rounding_error = 16.0 * EPS * float(np.abs(seen.run.q).max())
     stretch = np.abs(case.lengths(seen.run.q) - case.rho)
     return float((case.mu * (stretch + rounding_error) * rounding_error).sum(axis=1).max())
 
 
 def energy_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], tolerances: Tolerances) -> Claim:
-    """Return the claim, on an undirected tree, that H never rises."""
+    """Return the claim that the energy H of a flock on an undirected tree never rises."""
     if "work" not in seen.run.extra:
         return undecided("energy", "the run carries no integral of dH/dt", needs)
     H, largest, rate = seen.run.energy(), float(seen.run.energy().max()), float(seen.run.energy_rate().max())

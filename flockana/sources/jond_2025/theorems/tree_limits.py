@@ -31,12 +31,12 @@ _ERROR = 1e-12  # of a share: all roundings in it are taken outwards
 
 
 def state(q: FloatArray, p: FloatArray) -> End:
-    """Return a stored state as an exact final state."""
+    """Return given positions and velocities as a final state with zero error bounds."""
     return End(q, p, np.zeros(len(q)), np.zeros(len(q)))
 
 
 def edge_shares(case: TreeCase, end: End) -> FloatArray:
-    """Return V̂/(½μρ²) of each edge (below 1 the length never reaches 0); ∞ where unknown."""
+    """Return an upper bound of each edge's energy over its barrier ½μρ²; ∞ where unknown."""
     link_lengths, rates = case.edges_of(end.q, end.q_error), case.edges_of(end.p, end.p_error)
     if case.root is not None:
         return _directed(case, case.energies(link_lengths, rates).hi)
@@ -47,7 +47,7 @@ def edge_shares(case: TreeCase, end: End) -> FloatArray:
 
 
 def _directed(case: TreeCase, start: FloatArray) -> FloatArray:
-    """Return bounds of each edge's energy over its barrier, from the root outwards."""
+    """Return an upper bound of each edge's energy over its barrier ½μρ² on a directed tree; ∞ if unknown."""
     shares, felt_accelerations = np.full(len(case.links), inf), {case.root: 0.0}
     for e, parent, child in case.walk:
         W, mu, a = felt_accelerations[parent], float(case.mu[e]), float(case.align[e])
@@ -78,6 +78,6 @@ def velocity_claim(case: TreeCase, seen: Observed, needs: list[Hypothesis], *, s
 
 
 def kept(case: TreeCase, end: End) -> float:
-    """Return the least |x|/ρ kept at all times by the edge farthest from collision; <= 0 if unknown."""
+    """Return a lower bound of |x|/ρ at all times for the edge farthest from collision; <= 0 if unknown."""
     share = float(edge_shares(case, end).min())
     return 1.0 - sqrt(share) - 4.0 * EPS if share < 4.0 else -1.0

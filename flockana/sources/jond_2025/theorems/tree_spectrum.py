@@ -24,13 +24,13 @@ class Spectrum(NamedTuple):
 
 
 def tree_spectrum(case: TreeCase, q: FloatArray) -> Spectrum:
-    """Return the spectrum of the law linearised at a point of the manifold, with its slowest rate."""
+    """Return the spectrum of the minimal law linearised at a tree's equilibrium, with its slowest rate."""
     # Times are counted in 1/√μ of the stiffest spring, so that nothing depends on their unit.
     return _undirected(case, q) if case.root is None else _directed(case, q)
 
 
 def _directed(case: TreeCase, q: FloatArray) -> Spectrum:
-    """Return the polynomial of a directed tree, with factors s² + a s + μ, and its kernel's dimension.
+    """Return the spectrum of a directed tree, from a polynomial with factors s² + a s + μ, and its kernel.
 
     Eigenvalues are not computed: those of a chain of equal edges are defective, and rounding would spread them.
     """
@@ -46,7 +46,7 @@ def _directed(case: TreeCase, q: FloatArray) -> Spectrum:
 
 
 def _undirected(case: TreeCase, q: FloatArray) -> Spectrum:
-    """Return the spectrum of an undirected tree from s² + γs + κ = 0, with quotients κ, γ >= 0 of each mode."""
+    """Return the spectrum of an undirected tree, whose modes satisfy s² + γs + κ = 0 with γ, κ >= 0."""
     # All roots but 0 have negative real parts, and 0 is semisimple, if C is positive off the translations; then 0 has
     # the multiplicity of the kernel of K, less translations.
     m, unit = q.shape[1], 1.0 / sqrt(float(case.mu.max()))
@@ -62,7 +62,7 @@ def _undirected(case: TreeCase, q: FloatArray) -> Spectrum:
 
 
 def _in_units_of(A: FloatArray, unit: float) -> FloatArray:
-    """Return the matrix A of (x, x') with time in another unit."""
+    """Return the system matrix A of (x, x') rescaled to another unit of time."""
     half_dimension = len(A) // 2
     scale = np.concatenate([np.ones(half_dimension), np.full(half_dimension, unit)])
     return A * (scale[:, None] * unit) / scale[None, :]

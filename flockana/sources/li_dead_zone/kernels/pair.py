@@ -20,13 +20,13 @@ ETA, K_R, K_DELTA, K_1, D_1, D_2, R, R_D, RAMP, INNER, OUTER = range(11)
 
 @register_jitable
 def repulsion(s, par):
-    """Return the repulsion 2k_r/s² + k_δ, without ramp."""
+    """Return the repulsive force 2k_r/s² + k_δ at distance s, without ramp."""
     return 2.0 * par[K_R] / (s * s) + par[K_DELTA] if s > 0.0 else inf
 
 
 @register_jitable
 def attraction(s, par):
-    """Return the attraction 2k_r/(r_d − s)² + k_δ, without ramp."""
+    """Return the attractive force 2k_r/(r_d − s)² + k_δ at distance s, without ramp."""
     return 2.0 * par[K_R] / (par[R_D] - s) ** 2 + par[K_DELTA]
 
 
@@ -42,7 +42,7 @@ def zone_of(s, par):
 
 @register_jitable
 def action(s, par):
-    """Return f(s): negative repels, positive attracts; ramped to 0 at both ends of the dead zone."""
+    """Return the scalar force f(s), negative where repulsive, ramped to 0 at the ends of the dead zone."""
     zone, ramp = zone_of(s, par), par[RAMP]
     if zone == REPULSION:
         return -repulsion(s, par) * (min(1.0, (par[D_1] - s) / ramp) if ramp > 0.0 else 1.0)
@@ -53,7 +53,7 @@ def action(s, par):
 
 @register_jitable
 def action_slope(s, par):
-    """Return df/ds off the edges of the zones."""
+    """Return the slope df/ds of the scalar force, away from the edges of the zones."""
     zone, ramp = zone_of(s, par), par[RAMP]
     if zone == REPULSION:
         slope, share = 4.0 * par[K_R] / s**3, (par[D_1] - s) / ramp if ramp > 0.0 else 1.0
@@ -66,7 +66,7 @@ def action_slope(s, par):
 
 @register_jitable
 def force(s, par):
-    """Return F(s) = f(s) s/√(1 + ηs²) + k₁ s within the range, 0 beyond: negative repels."""
+    """Return the pair force F(s) = f(s) s/√(1 + ηs²) + k₁ s within the range, 0 beyond; negative repels."""
     if s >= par[R]:
         return 0.0
     return action(s, par) * s / sqrt(1.0 + par[ETA] * s * s) + par[K_1] * s
@@ -74,7 +74,7 @@ def force(s, par):
 
 @register_jitable
 def repulsive_part(s, b, par):
-    """Return ∫_s^b (2k_r/x² + k_δ) x/√(1 + ηx²) dx for 0 < s ≤ b, stable also at η = 0."""
+    """Return the potential of repulsion, ∫_s^b (2k_r/x² + k_δ) x/√(1 + ηx²) dx, for 0 < s ≤ b."""
     root_at_s, root_at_b = sqrt(1.0 + par[ETA] * s * s), sqrt(1.0 + par[ETA] * b * b)
     gap = (b - s) * (b + s) / (root_at_s + root_at_b)
     is_close = b < 2.0 * s  # else nothing cancels, and 1 + x would round
@@ -85,7 +85,7 @@ def repulsive_part(s, b, par):
 
 @register_jitable
 def attractive_part(a, s, par):
-    """Return ∫_a^s (2k_r/(r_d − x)² + k_δ) x/√(1 + ηx²) dx for a ≤ s < r_d."""
+    """Return the potential of attraction, ∫_a^s (2k_r/(r_d − x)² + k_δ) x/√(1 + ηx²) dx for s < r_d."""
     eta, r_d = par[ETA], par[R_D]
     squared_scale = 1.0 + eta * r_d * r_d
     root_at_s, root_at_a, root = sqrt(1.0 + eta * s * s), sqrt(1.0 + eta * a * a), sqrt(squared_scale)
@@ -97,7 +97,7 @@ def attractive_part(a, s, par):
 
 @register_jitable
 def potential(s, par, panels):
-    """Return ψ(s) + ½ k₁ s²: closed form off the ramps, Chebyshev panels on them, constant from r on, ∞ at 0."""
+    """Return the pair potential ψ(s) + ½ k₁ s², by Chebyshev panels on ramps; constant from r on, ∞ at 0."""
     if s <= 0.0:
         return inf
     x, ramp = min(s, par[R]), par[RAMP]
@@ -125,20 +125,20 @@ def pair_dead_zone(s2, par):
 
 @register_jitable
 def pair_dead_zone_slope(s2, par):
-    """Return d(weight)/d(s2)."""
+    """Return the derivative by s2, the squared distance, of a pair's weight of q_j − q_i."""
     s, g = sqrt(s2), 1.0 + par[ETA] * s2
     return 0.5 * (action_slope(s, par) / s - par[ETA] * action(s, par) / g) / sqrt(g)
 
 
 @register_jitable
 def pair_dead_zone_potential(s2, par, panels):
-    """Return ψ + ½ k₁ s² of a pair at squared distance s2."""
+    """Return the potential ψ + ½ k₁ s² of a pair at squared distance s2."""
     return potential(sqrt(s2), par, panels)
 
 
 @register_jitable
 def pair_dead_zone_adjacency_slope(s2, par):
-    """Return da/d(s2) = 0, as a_ij is 1 within the range and 0 beyond."""
+    """Return the derivative 0 by s2 of the adjacency a_ij, which is 1 within the range and 0 beyond."""
     return 0.0
 
 
@@ -156,7 +156,7 @@ def zones(q, par):
 
 @kernel
 def zone_margins(q, zone, par):
-    """Return the margin of each pair inside its zone (negative beyond), and whether the upper edge is nearer."""
+    """Return each pair's distance from its zone's nearer edge, < 0 outside, and whether that is the upper edge."""
     n = len(q)
     margins, upper, k = np.empty(zone.size), np.empty(zone.size, np.bool_), 0
     for i in range(n):

@@ -74,7 +74,7 @@ def semi_implicit_steps(q, p, par, c2, dt, wanted):
 
 @register_jitable
 def _part(x, y, first, second, kept, d, s2):
-    """Write two components of each listed pair's difference, and add their squares to s2."""
+    """Write two components of the difference of each listed pair to `d`, and add their squares to `s2`."""
     for k in range(kept):
         i, j = first[k], second[k]
         dx, dy = x[j] - x[i], y[j] - y[i]
@@ -84,7 +84,7 @@ def _part(x, y, first, second, kept, d, s2):
 
 @register_jitable
 def _gather(near, degree, y, z, u, v):
-    """Add Σ_j near[i, j] (y_j − y_i) to u, and the same sum of z to v."""
+    """Add Σ_j near[i, j] (y_j − y_i) to u_i for every agent i, and Σ_j near[i, j] (z_j − z_i) to v_i."""
     for j in range(0, len(near), 4):
         a = near[j : j + 4]
         y_0, y_1, y_2, y_3 = y[j], y[j + 1], y[j + 2], y[j + 3]
@@ -171,7 +171,7 @@ def _spread(v, drift):
 
 @kernel
 def _listed(x, par, skin, near, degree, first, second, inside, ends):
-    """List pairs within a skin of the distances at which their force changes."""
+    """List all pairs but those more than a skin deep in the dead zone or beyond the range."""
     m, n = x.shape
     low, high, r = par[D_1] + skin, min(par[D_2], par[R]) - skin, par[R]
     pair_count = 0

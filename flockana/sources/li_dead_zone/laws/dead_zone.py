@@ -73,7 +73,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
 
     @cached_property
     def terms(self) -> tuple[Term, ...]:
-        """Terms with the saturated energy ½ Σ‖p_i − p̄‖² + Σ_{i<j} ψ(min(ρ_ij, r)), falling at k₂ pᵀL̂p (see L5)."""
+        """Pair forces and consensus, with the saturated energy, which falls at k₂ pᵀL̂p (erratum L5)."""
         return (PairTerm(self.interaction, 1.0, self.k2),)
 
     def literal_energy(self, q: Any, p: Any) -> float:
@@ -92,7 +92,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
     def semi_implicit(
         self, q: FloatArray, p: FloatArray, dt: float, steps: int, wanted: IndexArray | None = None
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return q, p after each kept step and u before, by semi-implicit Euler in one compiled loop.
+        """Return positions and velocities after, and inputs before, each kept semi-implicit Euler step.
 
         Parameters
         ----------
@@ -105,7 +105,7 @@ class DeadZoneFlocking(SumOfTerms, SwitchedLaw):
         return semi_implicit_steps(q, p, self.interaction.par, self.k2, dt, rows)
 
     def block(self, solver: Any) -> Block | None:
-        """Return `semi_implicit` for semi-implicit Euler steps of this law; None for subclasses."""
+        """Return a function that makes semi-implicit Euler steps; None for other solvers and for subclasses."""
         is_plain = type(self) is DeadZoneFlocking and type(self.interaction) is DeadZoneInteraction
         if not is_plain or solver.position_factor != 1.0:
             return None

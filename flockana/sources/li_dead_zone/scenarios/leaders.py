@@ -29,7 +29,7 @@ def _slip(run: Trajectory) -> FloatArray:
 
 
 def _carried_off(run: Trajectory) -> int:
-    """Return the number of agents whose velocity is closer to the other leader's."""
+    """Return the number of agents whose final velocity is closer to that of a leader not their own."""
     return int((_slip(run) > 1.0).sum())
 
 
@@ -81,7 +81,7 @@ _REPORTS = (_same, _different, _pinned, _parts, _within_r)
 
 
 def _leaders(seed: int = 0, gap: float = -_BOX) -> Scenario:
-    """Return two groups in one box, or in two adjacent boxes."""
+    """Return the scenario of two groups with a leader each, in one box or in two adjacent boxes."""
     shift = max(0.0, _BOX + ensure_finite_scalar("gap", gap))
     generator, group = np.random.default_rng(seed), np.arange(_N) % 2
     q, p = generator.uniform(0.0, _BOX, (_N, 2)), generator.uniform(-1.0, 1.0, (_N, 2))

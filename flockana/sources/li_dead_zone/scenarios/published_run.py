@@ -123,7 +123,7 @@ def _case(
     settings: str = "",
     **parameters: float,
 ) -> Callable[..., Scenario]:
-    """Return the builder of a run in a box, with its `expected` statuses for every seed."""
+    """Return the builder of a scenario of agents in a box, with `expected` statuses for every seed."""
 
     def build(seed: int = 0, n: int = own[0], box: float = own[1], ramp: float = own[2]) -> Scenario:
         generator, box = np.random.default_rng(seed), ensure_positive("box", box)

@@ -67,12 +67,12 @@ def final_components(seen: Observed, law: DeadZoneFlocking) -> Components:
 
 
 def settling(end: Components) -> Certificate:
-    """Return a certificate that each component settles and no two of them meet."""
+    """Return a certificate that the velocities of each component agree in the limit and no components meet."""
     return min((*(c.settles for c in end.members), end.apart), key=lambda each: each.margin - each.error)
 
 
 def velocities_match(seen: Observed, end: Components, needs: Needs, *, name: str) -> Claim:
-    """Return the claim K̃ → 0, certain if one component settles, refuted where components part."""
+    """Return the claim K̃ → 0, certain if a single component settles, refuted if components separate."""
     what: dict[str, Any] = {"what": "K̃", "of": "K̃", "start": "K̃ at the start", "stated": "K̃ -> 0: all velocities match"}
     certificates = [settling(end)] if end.count == 1 else []
     return decays_to_zero(seen, name, needs, certificates, series=seen.mismatch.mid, escape=end.separation, **what)

@@ -30,7 +30,7 @@ def _settled(law: DeadZoneFlocking, dt: float) -> tuple[FloatArray, FloatArray]:
 
 
 def _chatter(law: DeadZoneFlocking, dt: float) -> float:
-    """Return the mean of √K̃ from t = 200 to 220, as single instants vary too much."""
+    """Return √K̃, the velocity disagreement, averaged over t = 200 to 220."""
     velocities = law.semi_implicit(*_settled(law, dt), dt, round(20.0 / dt))[1]
     return float(np.sqrt(spreads(velocities) / velocities.shape[1]).mean())
 

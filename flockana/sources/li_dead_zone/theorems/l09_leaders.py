@@ -34,7 +34,7 @@ def led_run(
 
 
 def _slip(run: Trajectory) -> FloatArray:
-    """Return the largest ‖p_i − p_l‖ at the last samples relative to the leader's speed."""
+    """Return the largest velocity error to the leader at each late sample, relative to the leader's speed."""
     law = run.law.continuous
     rows = []
     for t, p in zip(run.t[1:], run.p[1:], strict=True):
@@ -44,7 +44,7 @@ def _slip(run: Trajectory) -> FloatArray:
 
 
 def _printed() -> Claim:
-    """Return the claim that (9), without leaders, bonds two agents meant to follow different leaders."""
+    """Return the printed claim that agents with different leaders do not match under (9), which has no leader."""
     law, q, p = DeadZoneFlocking(), np.array([[0.0, 0.0], [8.0, 0.0]]), np.array([[-0.2, 0.0], [0.2, 0.0]])
     bond = components_of(q, p, law).members[0].bond
     return limit_claim("printed", [], escape=bond).described(
@@ -86,7 +86,7 @@ def _apart(seen: Observed) -> Claim:
 
 
 def _fraction() -> Claim:
-    """Return the claim that a pinned agent on its leader and an unpinned one out of range feel no force."""
+    """Return the claim that pinning a fraction of agents makes all follow, refuted by an agent out of range."""
     law = LedDeadZoneFlocking(leaders=(LinearTarget((0.0, 0.0), (-1.0, 0.0)),), group=(0, 0), pinned=(0,))
     q, p = np.array([[0.0, 0.0], [20.0, 0.0]]), np.array([[-1.0, 0.0], [0.0, 0.0]])
     force = float(np.abs(law.flow(0.0, q, p)[0]).max())

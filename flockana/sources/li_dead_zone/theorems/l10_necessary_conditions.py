@@ -24,7 +24,7 @@ def escaping_pair() -> tuple[DeadZoneFlocking, FloatArray, FloatArray]:
 
 
 def energy_share(law: DeadZoneFlocking, q: FloatArray, p: FloatArray) -> float:
-    """Return H̄ over (n − 1) ψ̄(r); below 1, a connected flock stays connected."""
+    """Return the energy H̄ divided by (n − 1) ψ̄(r); below 1, a connected flock stays connected."""
     return law.hamiltonian(0.0, q, p) / ((len(q) - 1) * law.interaction.far_potential)
 
 
@@ -42,7 +42,7 @@ def _is_finite_apart() -> bool | None:
 
 
 def _necessary() -> Claim:
-    """Return the claim that the condition excludes some start, by algebra."""
+    """Return the claim that the paper's stated condition excludes some start, decided by algebra."""
     is_finite, stated = _is_finite_apart(), "the condition leaves some start out"
     if is_finite is None:
         return undecided("printed-necessary", "sympy cannot decide whether the potential is finite", stated=stated)

@@ -38,7 +38,7 @@ def hold(
     off: float = 0.0,
     p_off: float = 0.0,
 ) -> basins.Basin:
-    """Return the basin of the minimum near an isolated flock, for the flow or for the map of steps dt."""
+    """Return a basin of the potential's minimum near an isolated flock, for the flow or a map of steps dt."""
     if len(q) == 1:
         return basins.ALONE
     if q.size > DENSE_LIMIT or law.k2 == 0.0:
@@ -60,7 +60,7 @@ def hold(
 
 
 def _force(law: DeadZoneFlocking, q: FloatArray, stiffest: float) -> float:
-    """Return ‖∇U‖ over all coordinates, plus a bound of its rounding."""
+    """Return ‖∇U‖, the norm of the potential's gradient, plus a bound of its rounding error."""
     pair, pairs = law.interaction, links(q, law.interaction.r)
     pulls = np.abs(pair.force(link_lengths(q, pairs)))
     maximum = float(np.bincount(pairs.ravel(), weights=np.repeat(pulls, 2), minlength=1).max())
@@ -70,7 +70,7 @@ def _force(law: DeadZoneFlocking, q: FloatArray, stiffest: float) -> float:
 
 
 def _nearest_kink(law: DeadZoneFlocking, q: FloatArray) -> float:
-    """Return the distance of the nearest pair to a switching distance."""
+    """Return the least difference between a pair's distance and a distance at which the force switches."""
     pair = law.interaction
     kinks = [pair.d1 - pair.ramp, pair.d1]
     if pair.d2 < pair.r:
@@ -83,13 +83,13 @@ def _nearest_kink(law: DeadZoneFlocking, q: FloatArray) -> float:
 
 
 def _lipschitz(law: DeadZoneFlocking, q: FloatArray, window: float) -> float:
-    """Return a Lipschitz constant of ∇²U within a distance of q."""
+    """Return a Lipschitz constant of the Hessian ∇²U of the potential within a distance of q."""
     pairs = links(q, law.interaction.r)
     return basins.lipschitz_constant(len(q), pairs, _third(law, link_lengths(q, pairs), sqrt(2.0) * window))
 
 
 def _third(law: DeadZoneFlocking, lengths: FloatArray, slack: float) -> FloatArray:
-    """Return an upper bound of each pair potential's third derivative, over lengths within the slack."""
+    """Return a bound of each pair potential's third derivative, for lengths changed by up to `slack`."""
     # It is F'' along the pair three times, and (F/s)' along it once and across twice; of unit vectors the second kind
     # makes 3 e (1 - e²) <= 2/√3 at most. No pair leaves its piece of F within the slack.
     bounds, pair = np.zeros(lengths.shape), law.interaction
@@ -108,7 +108,7 @@ def _third(law: DeadZoneFlocking, lengths: FloatArray, slack: float) -> FloatArr
 
 
 def _action(pair: DeadZoneInteraction, zone: int, s: Enclosure) -> tuple[Enclosure, Enclosure, Enclosure]:
-    """Return f, f' and f'' on a piece beside the dead zone: repulsion, its ramp, ramp of attraction, attraction."""
+    """Return the force f and its derivatives f', f'' in one zone: repulsion, either ramp, or attraction."""
     near = zone < _DEAD
     way = s if near else pair.r_d - s
     squared_value = way.square()
@@ -123,7 +123,7 @@ def _action(pair: DeadZoneInteraction, zone: int, s: Enclosure) -> tuple[Enclosu
 
 
 def _stability(law: DeadZoneFlocking, q: FloatArray, stiffest: float, dt: float) -> float:
-    """Return 1 − (dt²Λ + 2 dt Γ)/2, positive where every mode of the map decays."""
+    """Return 1 − (dt²Λ + 2 dt Γ)/2, positive where all modes of the semi-implicit Euler map decay."""
     m = q.shape[1]
     agent_laplacian = law.interaction.laplacian(q).toarray()[::m, ::m]  # each component has the same
     dissipation = law.k2 * float(np.linalg.eigvalsh(agent_laplacian)[-1])

@@ -35,7 +35,7 @@ _WHOLE = 1e-12  # of a number of pairs, by which rounding may make it a whole on
 
 @dataclass(frozen=True, eq=False)
 class Component:
-    """Component of the net at one instant, with certificates valid while it meets no other component."""
+    """Connected component of the net at one instant, with certificates valid while no others come into range."""
 
     law: DeadZoneFlocking
     q: FloatArray
@@ -69,7 +69,7 @@ class Component:
 
     @property
     def bond(self) -> Certificate:
-        """Certificate by energy that a component stays together and its velocities match; for flows only."""
+        """Certificate by energy that the component stays connected and its velocities match; for flows only."""
         if self.size == 1:
             return Certificate(1.0, "one agent has one velocity")
         if self.dt is not None or self.law.k2 == 0.0:
@@ -81,7 +81,7 @@ class Component:
 
     @property
     def settles(self) -> Certificate:
-        """Certificate that the component's velocities match in the limit, the better of two."""
+        """Certificate, by energy or by a basin, that the component's velocities match in the limit."""
         return self.bond if self.bond.certain else self.basin.certificate
 
     @cached_property
@@ -98,7 +98,7 @@ class Component:
 
 @dataclass(frozen=True, eq=False)
 class Components:
-    """Components of a flock at one instant."""
+    """Connected components of a flock's net at one instant."""
 
     members: tuple[Component, ...]
     r: float
@@ -110,7 +110,7 @@ class Components:
 
     @property
     def mismatch(self) -> float:
-        """Largest K̃ of a component."""
+        """Largest velocity mismatch K̃ within any component."""
         return max(component.mismatch for component in self.members)
 
     @cached_property
@@ -182,7 +182,7 @@ def components_of(
     p_off: float = 0.0,
     energy_off: Callable[[npt.NDArray[np.intp]], float] = lambda agents: 0.0,
 ) -> Components:
-    """Return the components of the net at r."""
+    """Return the connected components of the net of pairs within range r."""
     label = components(len(q), links(q, law.interaction.r))
     groups = [np.flatnonzero(label == k) for k in range(int(label.max()) + 1)]
     members = (Component(law, q[g], p[g], dt, off, p_off, energy_off(g)) for g in groups)

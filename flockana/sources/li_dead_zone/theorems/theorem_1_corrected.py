@@ -19,7 +19,7 @@ from flockana.theorems.theorem_toolkit import (
 
 
 def _rate(seen: Observed, rate: np.ndarray, needs: list[Hypothesis]) -> Claim:
-    """Return the claim that −k₂ pᵀL̂p never is positive; as a sum of squares its sign has no rounding."""
+    """Return the claim that the energy rate −k₂ pᵀL̂p is never positive, a sign free of rounding errors."""
     worst, rising_count, energy = int(np.argmax(rate)), int(np.sum(~(rate <= 0.0))), seen.run.energy()
     return by_count("rate", rising_count, needs, proof=None if seen.is_map else case.PROOF).described(
         computed=float(rate[worst]),

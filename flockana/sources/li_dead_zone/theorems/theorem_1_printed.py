@@ -11,7 +11,7 @@ from flockana.theorems.theorem_toolkit import EPS, Certificate, Enclosure, Obser
 
 
 def _certain_radius(seen: Observed, end: Components, radius: float) -> tuple[Enclosure | None, str]:
-    """Return 1 − R/r of the limit and its certificate; None where unknown."""
+    """Return 1 − R/r in the limit, R the cohesion radius, and its certificate; None where unknown."""
     if end.count > 1:
         separation = end.separation
         return Enclosure.around(-separation.margin, separation.error) if separation.certain else None, separation.text
@@ -27,7 +27,7 @@ def _certain_radius(seen: Observed, end: Components, radius: float) -> tuple[Enc
 
 
 def _cohesion(seen: Observed, end: Components, needs: list[Hypothesis]) -> Claim:
-    """Return the claim R ≤ r in the limit."""
+    """Return the claim that the cohesion radius R is at most the range r in the limit."""
     radius = cohesion_radius(seen.run.q[-1])
     margin, is_certain = _certain_radius(seen, end, radius)
     inner_margin, outer_margin = (-1.0, -1.0) if margin is None else (float(margin.lo), float(-margin.hi))

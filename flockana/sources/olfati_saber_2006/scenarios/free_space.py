@@ -83,7 +83,7 @@ def _topology_changes(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 @report("mismatched", "velocities do not match (Fig. 18(b): K̃ stays away from 0)")
 def _stays_mismatched(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Report that K̃ never falls to a small share of its value in the second half."""
+    """Report that velocity mismatch K̃ never falls to a small share of K̃(0) in the second half."""
     series = run.metric("normalised_velocity_mismatch")
     late_values = series[run.t >= 0.5 * (run.t[0] + run.t[-1])]
     share = float(late_values.min() / series[0])
@@ -98,7 +98,7 @@ def _stays_mismatched(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 @report("expands", "the cohesion radius grows (Fig. 18(b): R)")
 def _expands(run: Trajectory, tolerances: Tolerances) -> Claim:
-    """Report that R grows throughout the second half."""
+    """Report that the cohesion radius R grows throughout the second half of the run."""
     radius = run.metric("cohesion_radius")
     late_values = radius[run.t >= 0.5 * (run.t[0] + run.t[-1])]
     rise = float(np.diff(late_values).min() / run.scales.length)
@@ -174,7 +174,7 @@ def _following(
 
 
 def _fragmentation(seed: int = 0) -> Scenario:
-    """Build Fig. 12, whose run violates the hypothesis of Theorem 1."""
+    """Build the scenario of Fig. 12, whose run violates the hypothesis of Theorem 1."""
     title = "Fig. 12: 40 agents without a γ-agent fall apart"
     source = f"Olfati-Saber 2006, Fig. 12 and 18(b): n = 40, Algorithm 1, q and p as in Fig. 10. {_OURS}"
     expected = verified("energy") | vacuous("os-1")
@@ -187,7 +187,7 @@ def _fragmentation(seed: int = 0) -> Scenario:
 
 
 def _collapse(seed: int = 0) -> Scenario:
-    """Build the collapse of erratum E11: Theorem 3 holds, but the limit is no lattice."""
+    """Build the scenario of erratum E11: Theorem 3 holds, but the flock collapses and is no lattice."""
     gains = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=1.0, c2_gamma=1.0)
     title = "Unit gains: 150 agents are squeezed until pairs coincide"
     source_text = (
@@ -204,7 +204,7 @@ def _collapse(seed: int = 0) -> Scenario:
 
 
 def _hexagon(seed: int = 0) -> Scenario:
-    """Build a run that meets the hypotheses of Theorem 1: connected throughout, H(0) < c*."""
+    """Build the scenario that meets Theorem 1's hypotheses: connected throughout, H(0) < c*."""
     alpha, generator = AlphaInteraction(), np.random.default_rng(seed)
     ring = [(cos(k * pi / 3.0), sin(k * pi / 3.0)) for k in range(6)]
     q = alpha.d * np.array([(0.0, 0.0), *ring]) + generator.uniform(-0.2, 0.2, (7, 2))
@@ -222,7 +222,7 @@ def _hexagon(seed: int = 0) -> Scenario:
 
 
 def _three_agents(seed: int = 0) -> Scenario:
-    """Return erratum E13: enough energy for one coincident pair, and two that coincide in turn."""
+    """Return the scenario of erratum E13: three agents, two pairs of which coincide one after the other."""
     alpha = AlphaInteraction(a=5e4, b=5e4)
     gains = Gains(c1_alpha=1.0, c2_alpha=1.0, c1_gamma=0.01, c2_gamma=0.01)
     p0 = lazy_array((3, 1), lambda: np.array([[sqrt(5.6 * alpha.c_star)], [0.0], [0.0]]))

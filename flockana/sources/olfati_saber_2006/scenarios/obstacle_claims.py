@@ -136,7 +136,7 @@ def rests(run: Trajectory, tolerances: Tolerances) -> Claim:
 
 
 def _measured(run: Trajectory) -> tuple[ConstrainedLattice, float, str]:
-    """Return the relative distance of the end state from a constrained α-lattice, and its description."""
+    """Return the end's errors against a constrained α-lattice, the largest relative one, and a description."""
     law = run.law
     end = constrained_lattice(run.q[-1], law.obstacles, alpha=law.alpha, beta=law.beta)
     strain = max(end.alpha_error / law.alpha.d, end.beta_error / law.beta.d)

@@ -67,7 +67,7 @@ _MOVING = verified("energy") | vacuous("energy:rate", "os-6")
 
 
 def _reported(*names: str) -> dict[str, Status]:
-    """Return the source's reports confirmed by a run."""
+    """Return expected statuses, all verified, for the source's reports of given names."""
     return verified(*(f"{SOURCE}:{name}" for name in names))
 
 
@@ -84,7 +84,7 @@ def _entry(
     reports: tuple[Report, ...],
     shipped: Mapping[str, Status] = MappingProxyType({}),
 ) -> tuple[str, Builder]:
-    """Return the name and builder of a run with obstacles; the flock is given as n, centre and spread."""
+    """Return the name and builder of a scenario with obstacles; the flock is given as n, centre and spread."""
     law, (n, centre, spread) = Algorithm3(gains=GAINS, target=target, obstacles=tuple(obstacles)), flock
     room, text = BetaInteraction().d, f"{source} {_OURS}"
     unit_reports = in_source_units(lambda: law.scales, (stays_clear, *reports))

@@ -27,7 +27,7 @@ _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, m
 
 @dataclass(frozen=True)
 class _Window:
-    """Part of a run, with the sample before it for bounds at its beginning."""
+    """Final part of a run on which flocking is judged, with one sample before it for bounds."""
 
     seen: Observed  # Its samples, and that one
     first: int  # The first sample within
@@ -94,7 +94,7 @@ def _connected(part: _Window) -> Claim:
 
 
 def _giant(part: _Window, tolerances: Tolerances) -> Claim:
-    """Return the claim that a component keeps more than a share of the agents, based on certain links."""
+    """Return the claim that one component always has more than a given share of all agents."""
     n = part.seen.n
     interval_nets, sample_nets = (
         bounds_between_samples.nets_between(part.seen),
@@ -106,7 +106,7 @@ def _giant(part: _Window, tolerances: Tolerances) -> Claim:
 
 
 def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:
-    """Return the claims Ẽ <= ε₁ and K̃ <= ε₂, with uncertain links counted in Ẽ."""
+    """Return the claims Ẽ <= ε₁ on deviation energy and K̃ <= ε₂ on velocity mismatch."""
     seen = part.seen
     (d, r), units = seen.law.lattice, seen.scales.energy
     rounding = 8.0 * EPS * (float(np.abs(seen.run.q).max()) / d + 1.0)
@@ -137,7 +137,7 @@ def _common(part: _Window, tolerances: Tolerances) -> list[Claim]:
 
 
 def _cohesive(part: _Window, tolerances: Tolerances) -> Claim:
-    """Return the claim that R never exceeds a multiple of its value at the start of the window."""
+    """Return the claim that the cohesion radius R never exceeds a multiple of its value at the window's start."""
     seen = part.seen
     time_offset = float(seen.t[part.first]) - part.start  # by which its first sample comes later than the window begins
     growth_bound = float(bounds_between_samples.fastest_between(seen)[0]) * time_offset if part.first else 0.0

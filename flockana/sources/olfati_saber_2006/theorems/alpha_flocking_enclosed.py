@@ -22,7 +22,7 @@ _SHARE = 1e-9  # of an agent: what a share of n agents, as a decimal fraction, m
 
 
 def _window(tube: Tube, tolerances: Tolerances) -> tuple[Hypothesis, range]:
-    """Return the judged steps: those that end within the last part of the tube."""
+    """Return the hypothesis that a tube covers the judged window, and the numbers of the steps within."""
     start = tube.t[0] + tolerances.settle * (tube.t[-1] - tube.t[0])
     steps = [k for k in range(len(tube.taken)) if tube.t[k + 1] > start]
     is_broken = tube.status != "complete"
@@ -44,7 +44,7 @@ def _distances(tube: Tube, k: int) -> dict[Pair, arb]:
 
 
 def _components(tube: Tube, window: range, name: str, most: int, missing: Callable[[list[Pair]], int]) -> Claim:
-    """Return the claim that a number falling with each link never exceeds a bound."""
+    """Return the claim that a number that falls with each link, such as that of components, never exceeds a bound."""
     reach = arb(exact(tube.law.alpha.r))
 
     def count(k: int) -> arb:
@@ -59,7 +59,7 @@ def _components(tube: Tube, window: range, name: str, most: int, missing: Callab
 
 
 def _deviation(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
-    """Return the claim Ẽ <= ε₁ at all times of the window."""
+    """Return the claim that the deviation energy is small, Ẽ <= ε₁, at all times of the window."""
     d, reach = arb(exact(tube.law.alpha.d)), arb(exact(tube.law.alpha.r))
 
     def value(k: int) -> arb:
@@ -73,7 +73,7 @@ def _deviation(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
 
 
 def _mismatch(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
-    """Return the claim K̃ <= ε₂ at all times of the window."""
+    """Return the claim that the velocity mismatch is small, K̃ <= ε₂, at all times of the window."""
     units, n, m = arb(tube.law.scales.energy), tube.n, tube.m
 
     def value(k: int) -> arb:
@@ -93,7 +93,7 @@ def _below(name: str, symbol: str, highest: arb, bound: float, when: float) -> C
 
 
 def _cohesive(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
-    """Return the claim that R never exceeds a multiple of its value at the start of the window."""
+    """Return the claim that the cohesion radius R never exceeds a multiple of its value at the window's start."""
     rows = [[norm(x) for x in tube.taken[k].deviations] for k in window]
     radii = [max(row, key=lambda x: float(x.upper())).union(max(row, key=lambda x: float(x.lower()))) for row in rows]
     bound = arb(tolerances.cohesion) * radii[0]
@@ -109,7 +109,7 @@ def _connected(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
 
 
 def _giant(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
-    """Return the claim that a component keeps more than a share of the agents."""
+    """Return the claim that one component always has more than a given share of all agents."""
     outer_count = tube.n - floor(tolerances.giant * tube.n + _SHARE) - 1
     return _components(tube, window, "giant", outer_count, lambda pairs: tube.n - groups(tube.n, pairs)[0])
 
@@ -117,7 +117,7 @@ def _giant(tube: Tube, window: range, tolerances: Tolerances) -> Claim:
 def _check(
     claims: Iterable[Callable[..., Claim]], tube: Tube, basin: BasinLike | None, tolerances: Tolerances
 ) -> Checked:
-    """Return claims for the starts of a tube."""
+    """Return the hypothesis and given claims of α-flocking for all starts enclosed by a tube."""
     spans, window = _window(tube, tolerances)
     with ctx.workprec(BITS):
         return [spans], [] if spans.status == "unmet" else [claim(tube, window, tolerances) for claim in claims]

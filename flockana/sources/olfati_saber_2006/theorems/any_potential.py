@@ -37,12 +37,12 @@ _PARTS = 4  # of the range, on which slopes are bounded
 
 
 def is_paper(seen: Observed) -> bool:
-    """Return whether the pair law is the paper's, with all properties proved."""
+    """Return whether the pair law is that of Olfati-Saber (2006), whose properties are all proved."""
     return isinstance(seen.law.alpha, AlphaInteraction)
 
 
 def attribute_claims(seen: Observed, claims: list[Claim]) -> list[Claim]:
-    """Return claims attributed to the paper, or to flockana for other pair laws."""
+    """Return claims attributed to Olfati-Saber (2006), or to flockana for pair laws not in the paper."""
     return claims if is_paper(seen) else [replace(claim, by="flockana") for claim in claims]
 
 
@@ -54,7 +54,7 @@ def potential_needs(seen: Observed) -> list[Hypothesis]:
 
 
 def weight_inside(seen: Observed) -> list[Hypothesis]:
-    """Return the hypothesis that all pairs in range match velocities; empty if proved."""
+    """Return the hypothesis that weights a_ij are positive below the range, in a list; empty if proved."""
     inside_fact = hypothesis_from_fact("a_ij > 0 at every distance below the range", seen.law.alpha.facts.inside)
     return [inside_fact] if inside_fact.status != "met" else []
 
@@ -95,7 +95,7 @@ def disconnected_energy(law: Algorithm1, n: int, m: int) -> float:
 
 
 def parting_energy(seen: Observed) -> float:
-    """Return the least known E of a split state: each of n − 1 pairs out of range has ψ(r) − L."""
+    """Return the least known energy E of a flock split in two, (n − 1) c1α (ψ(r) − L)."""
     pair = seen.law.alpha
     energy = 0.0 if is_paper(seen) else pair.facts.least[0]
     margin = pair.far_potential - energy
@@ -105,7 +105,7 @@ def parting_energy(seen: Observed) -> float:
 
 
 def stays_together(seen: Observed) -> Hypothesis:
-    """Return the hypothesis on all solutions from Ω_c: too little energy to split, or a known split state."""
+    """Return the hypothesis that all solutions from Ω_c stay connected, from the energy that a split needs."""
     parts = nets_at(seen).components_least
     worst = int(np.argmax(parts))
     name = "every solution from Ω_c is a cohesive dynamic flock"
@@ -129,7 +129,7 @@ def stays_together(seen: Observed) -> Hypothesis:
 
 
 def cohesive(seen: Observed, needs: list[Hypothesis], *, name: str, proof: str = PROOF) -> Claim:
-    """Return the claim R below a bound under Algorithm 2: ½ c1γ R² <= λ J <= E(t) <= E(0)."""
+    """Return the claim that the cohesion radius R is bounded under Algorithm 2 by √(2 E(0)/c1γ)."""
     c1_gamma, energy_margin = seen.law.gains.c1_gamma, above_least(seen, seen.energy[0])
     bound = (2.0 * energy_margin / c1_gamma).sqrt() if c1_gamma > 0.0 else Enclosure.of(np.inf)
     text = "sqrt(2 H_λ(0)/c1γ)" if is_paper(seen) else "sqrt(2 E(0)/c1γ)"
@@ -137,7 +137,7 @@ def cohesive(seen: Observed, needs: list[Hypothesis], *, name: str, proof: str =
 
 
 def _within(seen: Observed, bound: Enclosure, needs: list[Hypothesis], name: str, text: str, proof: str) -> Claim:
-    """Return the claim that R stays below a bound."""
+    """Return the claim that the cohesion radius R stays below a bound."""
     worst, largest = int(np.argmax(seen.radius.mid)), float(seen.radius.mid.max())
     return judged(name, bound - radius_over(seen).max(), needs, proof=proof, computed=largest).described(
         stated=f"R <= {text} = {bound.mid:.5g}",
@@ -147,14 +147,14 @@ def _within(seen: Observed, bound: Enclosure, needs: list[Hypothesis], name: str
 
 
 def critical(seen: Observed, needs: list[Hypothesis], *, name: str) -> Claim:
-    """Return the claim that forces tend to 0: the flock tends to critical points of its potential."""
+    """Return the claim that potential forces tend to 0, so that the flock tends to critical points."""
     forces = [np.linalg.norm(structural_force(seen.law, q), axis=1).max() for q in seen.run.q[[0, -1]]]
     stated_text = "the largest force on an agent at rest -> 0"
     return decays_to_zero(seen, name, needs, series=forces, what="the largest force", stated=stated_text, proof=LIMITS)
 
 
 def _needs(seen: Observed) -> list[Hypothesis]:
-    """Return the theorem's hypotheses on gains, potential and net."""
+    """Return the hypotheses on gains, potential and net of Theorem 1 or 3 for any pair potential."""
     if isinstance(seen.law, Algorithm2):
         return [positive(seen, c1_gamma="c1γ", c2_gamma="c2γ"), *potential_needs(seen)]
     gains = [positive(seen, c1_alpha="c1α"), positive(seen, c2_alpha="c2α")]

@@ -30,7 +30,7 @@ def _minimum(seen: Observed, needs: list[Hypothesis], end: TerminalState, tolera
 
 
 def _limits(seen: Observed, needs: list[Hypothesis], end: TerminalState) -> list[Claim]:
-    """Return the proved parts of claim (ii), for every start and for almost every start."""
+    """Return the proved claims of (ii): convergence for every start, ∇²U_λ >= 0 for almost every start."""
     pieces = Hypothesis("ψ is C², analytic in finitely many pieces", "assumed", detail="proved of the paper's law")
     needs = needs if any_potential.is_paper(seen) else [*needs, pieces]
     limit_text = "converges to one equilibrium (x, 0), that is ∇U_λ(x) = 0"

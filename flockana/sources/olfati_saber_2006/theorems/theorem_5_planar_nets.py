@@ -47,7 +47,7 @@ class Net:
         self.crossings = crossings(q, self.links, limit=LISTED)
 
     def agents(self, pair: Any) -> list[list[int]]:
-        """Return the agents of two links."""
+        """Return the two agents of each of two links, given by their indices."""
         return [[int(v) for v in self.links[k]] for k in pair]
 
     @property
@@ -58,7 +58,7 @@ class Net:
 
     @property
     def crossing_text(self) -> str:
-        """Number of crossings, in words."""
+        """Number of pairs of links that cross, in words."""
         if not self.crossing_count:
             return f"no two of {len(self.links)} links cross"
         return f"{self.crossing_count} pairs of {len(self.links)} links cross"
@@ -173,7 +173,7 @@ def _quantitative(net: Net) -> Claim:
 
 
 def crossing_lengths(net: Net) -> tuple[FloatArray, FloatArray]:
-    """Return the squared length of the longer of two crossing links, and the least squared distance of their agents."""
+    """Return each crossing's longer squared link length and the least squared distance of its four agents."""
     agents = net.links[net.crossings].reshape(-1, 4)
     squared = [
         np.where(agents[:, i] == agents[:, j], np.inf, ((net.q[agents[:, i]] - net.q[agents[:, j]]) ** 2).sum(axis=1))
@@ -183,7 +183,7 @@ def crossing_lengths(net: Net) -> tuple[FloatArray, FloatArray]:
 
 
 def holds_exactly(net: Net, two: LinkArray) -> bool:
-    """Return whether two agents of two links are within ℓ/√2, in exact arithmetic."""
+    """Return whether two of the agents of two crossing links are within ℓ/√2, in exact arithmetic."""
 
     def squared(i: Any, j: Any) -> Fraction:
         return sum(((Fraction(a) - Fraction(b)) ** 2 for a, b in zip(net.q[i], net.q[j], strict=True)), Fraction(0))
@@ -193,7 +193,7 @@ def holds_exactly(net: Net, two: LinkArray) -> bool:
 
 
 def _unless_open(net: Net, claim: Claim) -> Claim:
-    """Return the claim, inconclusive instead of refuted if inexact positions leave links uncertain."""
+    """Return a claim with refuted changed to inconclusive if inexact positions leave links uncertain."""
     if not net.off or claim.status != "refuted":
         return claim
     return replace(claim, status="inconclusive", detail=f"{claim.detail}; positions are known to {net.off:.3g}")

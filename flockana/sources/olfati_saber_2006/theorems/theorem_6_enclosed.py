@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def _declared_velocity(tube: Tube) -> FloatArray:
-    """Return p_r, which is constant on a straight path."""
+    """Return the γ-agent's velocity p_r, which is constant on a straight path."""
     terms = tube.law.target.harmonic.terms
     return terms[1] + terms[4]
 
@@ -61,7 +61,7 @@ def _stays_outside(tube: Tube) -> Hypothesis:
 
 
 def _never_rises(tube: Tube, flow: Flow, since: int, needs: list[Hypothesis]) -> Claim:
-    """Return the claim that dH/dt is never positive from a step on."""
+    """Return the claim that the rate dH/dt of the energy is never positive from a given step on."""
     # With p_r = 0 and all agents outside, every term is minus a sum of squares: the margin is 1, at rest too.
     squares = not _declared_velocity(tube).any() and needs[-1].status == "met"
     margin, highest, time_of_highest = arb(1), arb(float("-inf")), tube.t[since]
@@ -95,7 +95,7 @@ def _balance(tube: Tube, needs: list[Hypothesis], tolerances: Tolerances) -> Cla
 
 
 def os_6(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
-    """Check Theorem 6 for the starts of a tube, over its time."""
+    """Check Theorem 6 of Olfati-Saber (2006) for all starts enclosed by a tube, over the time of the tube."""
     with ctx.workprec(BITS):
         flow = flow_of(tube.law, tube.n, tube.m)
         slow_claim, first_index = _slow_enough(tube, flow)

@@ -28,14 +28,14 @@ def _coincident_energy(tube: Tube) -> arb:
 
 
 def _below_c_star(tube: Tube, times: int = 1) -> Hypothesis:
-    """Return the hypothesis H(0) < k c*."""
+    """Return the hypothesis that the initial energy is below k times that of a coincident pair, H(0) < k c*."""
     with ctx.workprec(BITS):
         name = "H(0) < c*" if times == 1 else f"H(0) < {times} c*"
         return tube_claims.below(name, tube.energy(0), times * _coincident_energy(tube))
 
 
 def _below_barrier(tube: Tube) -> Hypothesis:
-    """Return the hypothesis H(0) < min{V : two agents coincide}."""
+    """Return the hypothesis that H(0) is below the least potential V of any state with two coincident agents."""
     name, alpha, energy = "H(0) < min{V : two agents coincide}", tube.law.alpha, tube.energy(0)
     if tube.n < 2:
         return condition(name, True, detail="there is one agent")
@@ -74,7 +74,7 @@ def _stays_together(tube: Tube) -> Hypothesis:
 
 
 def os_1(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
-    """Check Theorem 1 for the starts of a tube."""
+    """Check Theorem 1 of Olfati-Saber (2006) for all starts enclosed by a tube."""
     if unmet(requirements := [positive(tube, c1_alpha="c1α"), positive(tube, c2_alpha="c2α")]):
         return requirements, []
     case, requirements = tube_claims.TubeAndBasin.of(tube, basin), [*requirements, _stays_together(tube)]
@@ -104,7 +104,7 @@ def _lattice(case: tube_claims.TubeAndBasin, needs: list[Hypothesis], tolerances
 
 
 def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
-    """Check Theorem 3 for the starts of a tube."""
+    """Check Theorem 3 of Olfati-Saber (2006) for all starts enclosed by a tube."""
     gains = positive(tube, c1_gamma="c1γ", c2_gamma="c2γ")
     requirements, repels = [gains, condition("K(v(0)) and J(x(0)) are finite", True)], positive(tube, c1_alpha="c1α")
     case, is_complete = tube_claims.TubeAndBasin.of(tube, basin), tube.status == "complete"
@@ -136,7 +136,7 @@ def os_3(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked
 
 
 def _cohesive(case: tube_claims.TubeAndBasin, needs: list[Hypothesis]) -> Claim:
-    """Return claim (i): R stays below the bound √(2 H(0)/c1γ) from the initial energy."""
+    """Return claim (i), that the cohesion radius R stays below √(2 H(0)/c1γ), from the initial energy."""
     tube = case.tube
     if not tube.taken:
         return undecided("i", tube.message, needs, stated="R <= sqrt(2 H_λ(0)/c1γ)")
@@ -166,7 +166,7 @@ def _few_pairs(case: tube_claims.TubeAndBasin, repels: Hypothesis) -> Claim:
 
 
 def collision_energy(tube: Tube, basin: BasinLike | None, tolerances: Tolerances) -> Checked:
-    """Check the energy of a collision for the starts of a tube."""
+    """Check the claims on the energy needed for collisions, for all starts enclosed by a tube."""
     requirements, case = [positive(tube, c1_alpha="c1α")], tube_claims.TubeAndBasin.of(tube, basin)
     if unmet(requirements):
         return requirements, []

@@ -38,7 +38,7 @@ def _agreement(seen: Observed, root: Hypothesis) -> Claim:
 
 
 def average(seen: Observed, needs: Needs) -> Claim:
-    """Return the claim that all agents tend to the average of the start."""
+    """Return the claim that all agents tend to the average of their initial positions."""
     deviation = np.linalg.norm(seen.run.q[-1] - seen.run.q[0].mean(axis=0), axis=1).max()
     return limit_claim("average", needs, proof=_PROOF, computed=float(deviation)).described(
         stated="all tend to the average of the start", detail=f"at the end agents are up to {deviation:.3g} from it"
@@ -57,7 +57,7 @@ def _elsewhere(root: Hypothesis, balanced: Hypothesis) -> Claim:
 
 
 def slowest_rate(laplacian: FloatArray) -> float:
-    """Return λ₂ of (L + Lᵀ)/2, rounded down."""
+    """Return λ₂ of (L + Lᵀ)/2, a bound of the decay rate of disagreement, rounded down."""
     doubled_symmetric = laplacian + laplacian.T
     rounding = 8.0 * len(doubled_symmetric) * EPS * float(np.abs(doubled_symmetric).sum(axis=1).max())
     return 0.5 * (float(np.linalg.eigvalsh(doubled_symmetric)[min(1, len(doubled_symmetric) - 1)]) - rounding)
@@ -76,7 +76,7 @@ def decay(seen: Observed, needs: Needs, rate: float) -> Claim:
 
 
 def _steps(law: AverageConsensus, root: Hypothesis) -> Claim:
-    """Return the claim about steps q_i + ε Σ_j a_ij (q_j - q_i): the largest ε is at least 1/Δ."""
+    """Return the claim that steps q_i + ε Σ_j a_ij (q_j - q_i) converge up to an ε of at least 1/Δ."""
     moving, degree = moving_eigenvalues(laplacian_of(law.weights)), max(map(sum, law.weights))
     limits = [2 * mu.real / (mu.real**2 + mu.imag**2) for mu in moving]
     shortest = min(limits, key=lambda one: float(one.mid())) if limits else None

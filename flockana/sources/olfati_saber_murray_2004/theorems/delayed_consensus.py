@@ -29,7 +29,7 @@ def _net(n: int, pairs: list[tuple[int, int]]) -> FloatArray:
 
 
 def _nets() -> dict[str, tuple[DelaySystem, float]]:
-    """Return nets with their systems, and λ_n in closed form or from the matrix."""
+    """Return example nets by name, each as its delay system and largest Laplacian eigenvalue λ_n."""
     path, ring = [(0, 1), (1, 2)], [(k, (k + 1) % 6) for k in range(6)]
     star, whole = [(0, k) for k in range(1, 5)], [(i, j) for j in range(4) for i in range(j)]
     known_nets = {
@@ -60,7 +60,7 @@ def _margin(nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
 
 
 def _side(name: str, sign: int, nets: dict[str, tuple[DelaySystem, float]]) -> Claim:
-    """Return the rightmost root for a delay 1 % off the margin, by discretising the delayed state."""
+    """Return the claim on the sign of the rightmost root for a delay 1 % off the margin, on example nets."""
     share = 1.0 + sign * float(_AROUND)
     margin, error, deviation, real_parts = np.inf, 0.0, 0.0, {}
     for net, (system, largest) in nets.items():
@@ -93,7 +93,7 @@ def root_enclosure(share: Fraction) -> Any:
 
 
 def _exact(name: str, sign: int) -> Claim:
-    """Return an enclosure of one mode's rightmost root, by the principal branch W₀."""
+    """Return the claim on the sign of one mode's rightmost root 1 % off the delay margin, by Lambert's W₀."""
     share = 1 + sign * _AROUND
     root = root_enclosure(share)
     return decided(name, sign * root.real, proof=_PROOF).described(

@@ -19,7 +19,7 @@ def _nets_in_turn(seen: Observed) -> Hypothesis:
 
 
 def _of_all(needs: list[Hypothesis]) -> Hypothesis:
-    """Return the first unmet hypothesis of the nets, else the last net's, worded for all nets."""
+    """Return one hypothesis on all switching nets: the first unmet one of a net, or else the last."""
     worst = unmet(needs) or needs[-1]
     name = worst.name.replace("the net is", "every net is")
     return condition(name, worst.status == "met", worst.margin, f"net {needs.index(worst)}: {worst.detail}")

@@ -25,7 +25,7 @@ CLAIMS = ("energy", "distance", "informed", "linked", "pairs", "one-instant", "n
 
 
 def _lasting(run: Trajectory) -> tuple[Hypothesis, np.ndarray]:
-    """Return the hypothesis that uninformed agents stay linked to informed ones, and a mask of them."""
+    """Return the hypothesis that uninformed agents stay linked to informed ones, and a mask of such agents."""
     is_led = leader_frame.linked_to_informed(run) & ~leader_frame.informed(run)
     count, of = int(is_led.sum()), int((~leader_frame.informed(run)).sum())
     text = f"{count} of {of} uninformed agents, in each of {leader_frame.WINDOWS} windows of the last half of the run"

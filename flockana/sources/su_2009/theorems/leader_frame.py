@@ -28,7 +28,7 @@ WINDOWS = 4  # of equal length, of the last half of a run: in each of them an ag
 
 
 def gains_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
-    """Return c1γ and c2γ of each agent, two arrays of shape (n,)."""
+    """Return the gains c1γ and c2γ of each agent, two arrays of shape (n,)."""
     gains = run.law.gains
     pull, match = (np.broadcast_to(np.asarray(x, dtype=np.float64), (run.n,)) for x in (gains.c1_gamma, gains.c2_gamma))
     return pull, match
@@ -83,7 +83,7 @@ def _seen(run: Trajectory) -> Trajectory:
 
 
 def _shifted(target: Any, course: Any, feedforward: bool) -> dict[str, Any]:
-    """Return t, q, p and u of samples or steps relative to the leader."""
+    """Return the times, positions, velocities and inputs of samples or steps relative to the leader."""
     states = [(target.position(float(t)), target.rate(float(t))) for t in course.t]
     shape = (len(course.t), course.q.shape[2])
     position, speed = (np.array([state[k] for state in states]).reshape(shape) for k in (0, 1))

@@ -57,7 +57,7 @@ def _is_feedforward(run: Trajectory) -> Hypothesis:
 
 
 def centre_of(run: Trajectory) -> tuple[FloatArray, FloatArray]:
-    """Return q_c − q_r and p_c − p_r of a run in its leader's frame, and the closed form, (T, 2 m)."""
+    """Return the centre of mass's path in the leader's frame, measured and in closed form, (T, 2 m) each."""
     centre = np.concatenate([run.q.mean(axis=1), run.p.mean(axis=1)], axis=1)
     c1, c2 = run.law.gains.c1_gamma[0], run.law.gains.c2_gamma[0]
     flow = np.array([[0.0, 1.0], [-c1, -c2]])
@@ -85,7 +85,7 @@ def _centre(seen: Observed, gains: Gains, needs: list[Hypothesis]) -> Claim:
 
 
 def _shape_basin(seen: Observed, gains: Gains) -> list[Certificate]:
-    """Return the basin of the flock's shape in a list; empty for other pair laws."""
+    """Return the certificate of a basin of the flock's shape, in a list; empty for other pair laws."""
     if type(seen.law.alpha) is not AlphaInteraction:
         return []
     q, p, *errors = seen.end

@@ -6,7 +6,7 @@ from flockana.theorems.theorem_toolkit import Claim, Tolerances, equal, erratum,
 
 
 def _own_block() -> Any:
-    """Return the Hessian block of the total potential of one agent, less that of the agent's own potential."""
+    """Return one agent's Hessian block of the total potential minus that of the agent's own potential."""
     import sympy as sp
 
     V, agent_symbols = sp.Function("V"), [sp.symbols(f"x{i} y{i}", real=True) for i in range(3)]

@@ -24,7 +24,7 @@ def averaging_matrix(n: int, pairs: LinkArray) -> FloatArray:
 
 
 def contraction(matrix: FloatArray) -> float:
-    """Return Dobrushin's coefficient ½ max_ij Σ_k |M_ik − M_jk|, a bound of the factor of any spread."""
+    """Return Dobrushin's coefficient ½ max_ij Σ_k |M_ik − M_jk|: M shrinks spreads to this share or less."""
     return float(max(0.5 * np.abs(matrix - row).sum(axis=1).max() for row in matrix))
 
 

@@ -15,7 +15,7 @@ def averaged(headings: tuple[Fraction, ...]) -> Fraction:
 
 
 def _turned() -> Claim:
-    """Return the mean of a rotated pair and the rotated mean of the pair, in exact fractions of a turn."""
+    """Return the claim that rotating a flock need not rotate its mean headings, in exact fractions of a turn."""
     pair = (_AWAY, -_AWAY)
     differing_turns = [turn for turn in _TURNS if averaged(tuple((h + turn) % 1 for h in pair)) != turn]
     turned_average = averaged(pair)
