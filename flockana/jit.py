@@ -115,7 +115,7 @@ class Kernel:
                 _opened(dispatcher).compile(types)
             _ensure_plain(self.function.__name__, dispatcher.overloads[types].signature.return_type)
             if any(_holds_callback(numba, kind) for kind in types):
-                dispatcher = _audible(dispatcher)
+                dispatcher = _signal_safe(dispatcher)
         self._compiled = dispatcher
 
     def __reduce__(self) -> Any:
@@ -129,7 +129,7 @@ def _holds_callback(numba: Any, kind: Any) -> bool:
     return isinstance(kind, numba.types.FunctionType) or any(_holds_callback(numba, part) for part in parts)
 
 
-def _audible(dispatcher: Callable[..., Any]) -> Callable[..., Any]:
+def _signal_safe(dispatcher: Callable[..., Any]) -> Callable[..., Any]:
     """Return a wrapper of a numba function that loses no alarm or Ctrl-C while numba unpacks callbacks."""
 
     def call(*arguments: Any) -> Any:

@@ -363,6 +363,7 @@ print(calls)
 """
 
 
+@pytest.mark.slow
 @posix
 def test_an_alarm_while_numba_unpacks_a_callback_is_not_lost():
     """In a process of its own, as the one above; numba hands a callback to a kernel by calls of Python functions."""
